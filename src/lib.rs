@@ -1,0 +1,19 @@
+//! **etalon**: a ray-traced reference validator and error-metric toolkit for radiosity and view factors.
+pub mod cli;
+pub mod estimate;
+pub mod formfactor;
+pub mod io;
+pub mod math;
+pub mod methods;
+pub mod metrics;
+pub mod raycast;
+pub mod reference;
+pub mod render;
+pub mod report;
+pub mod sampling;
+pub mod scene;
+pub mod solution;
+pub mod solver;
+pub mod stats;
+pub mod study;
+pub mod view;

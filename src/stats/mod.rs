@@ -1,0 +1,5 @@
+//! Moments, estimates, intervals and tests. Knows no file, no scene, no terminal.
+
+mod estimate;
+
+pub use estimate::Estimate;
