@@ -99,9 +99,8 @@ mod tests {
     fn moments_of_the_cosine_hemisphere() {
         // Mean direction (0, 0, 2/3), mean square of z 1/2.
         let n = 200;
-        let (sum, square) = grid(n)
-            .map(|(s, t)| cosine_hemisphere(s, t))
-            .fold((DVec3::ZERO, 0.0), |(a, b), d| (a + d, b + d.z * d.z));
+        let (sum, square) =
+            grid(n).map(|(s, t)| cosine_hemisphere(s, t)).fold((DVec3::ZERO, 0.0), |(a, b), d| (a + d, b + d.z * d.z));
         let count = f64::from(n * n);
         // The rim, where z falls like a square root, costs the midpoint rule about n^-1.5 = 3.5e-4.
         assert!((sum / count - DVec3::new(0.0, 0.0, 2.0 / 3.0)).length() < 3.5e-4);
