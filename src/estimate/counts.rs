@@ -172,12 +172,7 @@ mod tests {
         assert_eq!((e.patch(), e.randomisation(), e.count()), (12_345, 31, 99));
         let a = [Entry::new(1, 0, 2), Entry::new(3, 1, 1)];
         let b = [Entry::new(1, 0, 5), Entry::new(1, 1, 1), Entry::new(4, 0, 1)];
-        assert_eq!(merge(&a, &b), [
-            Entry::new(1, 0, 7),
-            Entry::new(1, 1, 1),
-            Entry::new(3, 1, 1),
-            Entry::new(4, 0, 1)
-        ]);
+        assert_eq!(merge(&a, &b), [Entry::new(1, 0, 7), Entry::new(1, 1, 1), Entry::new(3, 1, 1), Entry::new(4, 0, 1)]);
     }
 
     #[test]

@@ -1,1 +1,10 @@
-//! (to come)
+//! File formats: scenes, matrices, solutions, references, images. Reads and writes, never computes.
+
+mod error;
+mod matrix;
+mod npz;
+mod solution;
+
+pub use error::FileError;
+pub use matrix::{MatrixFormat, read_form_factors, write_form_factors};
+pub use solution::{BandNames, SolutionFile, SolutionFormat, read_solution, write_solution};
