@@ -3,6 +3,7 @@
 //! A [`Scene`] is what the author wrote, all states at once; a [`Stage`] is what stands there in one
 //! state, divided into numbered patches. Everything downstream works on stages.
 
+mod hash;
 mod model;
 mod region;
 mod stage;
