@@ -3,6 +3,7 @@
 mod counts;
 mod emitter;
 mod plan;
+mod replicate;
 mod rows;
 
 pub use counts::{Entry, HitCounts};

@@ -1,8 +1,8 @@
 //! Level (a): the patch-constant system, solved with ray-cast form factors.
 
-use super::self_check::{self, Evidence};
-use super::transport::{LeaveOneOut, gather_each, repeated};
 use super::ReferenceError;
+use super::self_check::{self, Evidence};
+use super::transport::LeaveOneOut;
 use crate::estimate::{Casting, Entry, HitCounts, Plan, cast, element_emitters, patch_emitters};
 use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
@@ -168,14 +168,10 @@ fn solve(stage: &Stage, inputs: &Inputs, counts: &HitCounts) -> Result<Solved, R
         ..krylov::Params::default()
     };
     let (mean, info) = krylov::solve(&inputs.system(), &counts.form_factors(), None, &params, |_, _| {})?;
-    let emission = repeated(&inputs.emission, inputs.bands, r);
-    let reflectance = repeated(&inputs.reflectance, inputs.bands, r);
-    let system = System {
-        emission: &emission,
-        reflectance: &reflectance,
-        bands: inputs.bands * usize::from(r),
-    };
-    let guess = repeated(&mean, inputs.bands, r);
+    let emission = counts.repeated(&inputs.emission, inputs.bands);
+    let reflectance = counts.repeated(&inputs.reflectance, inputs.bands);
+    let system = System { emission: &emission, reflectance: &reflectance, bands: inputs.bands * usize::from(r) };
+    let guess = counts.repeated(&mean, inputs.bands);
     let (left_out, more) = krylov::solve(&system, &LeaveOneOut { counts }, Some(&guess), &params, |_, _| {})?;
     let residual = info.residual.iter().chain(&more.residual).copied().fold(0.0, f64::max);
     let replicates = pseudo_values(&mean, &left_out, inputs.bands, r);
@@ -200,8 +196,7 @@ fn relative_noise(stage: &Stage, replicates: &Replicates) -> f64 {
     let (mut noise, mut signal) = (0.0, 0.0);
     for (i, patch) in stage.patches.iter().enumerate() {
         let span = i * replicates.bands..(i + 1) * replicates.bands;
-        let y: Vec<f64> =
-            replicates.replicates.iter().map(|v| stage.photometry.luminance(&v[span.clone()])).collect();
+        let y: Vec<f64> = replicates.replicates.iter().map(|v| stage.photometry.luminance(&v[span.clone()])).collect();
         let mean = y.iter().sum::<f64>() / r;
         noise += patch.area * y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (r * (r - 1.0));
         signal += patch.area * mean * mean;
@@ -236,14 +231,15 @@ fn gather_elements(
             sources[k / bands * width + r * bands + k % bands] = *b;
         }
     }
-    let gathered = gather_each(&elements.counts, &sources, bands);
+    let gathered = elements.counts.apply_each(&sources, bands);
     let value = |r: usize, e: usize, c: usize| {
         let i = stage.elements[e].patch as usize * bands + c;
         let present = emitters[e].is_some();
         if present { inputs.emission[i] + inputs.reflectance[i] * gathered[e * width + r * bands + c] } else { 0.0 }
     };
-    let replicate =
-        |r: usize| (0..emitters.len()).flat_map(|e| (0..bands).map(move |c| (e, c))).map(|(e, c)| value(r, e, c)).collect();
+    let replicate = |r: usize| {
+        (0..emitters.len()).flat_map(|e| (0..bands).map(move |c| (e, c))).map(|(e, c)| value(r, e, c)).collect()
+    };
     Replicates { bands, replicates: (0..patches.count()).map(replicate).collect() }
 }
 

@@ -75,7 +75,8 @@ fn leaks(stage: &Stage, counts: &HitCounts, enclosure: bool, declared: bool) -> 
     }
     let consequence = format!("{lost}; at reflectance {brightest} that takes at most {effect:.1e} of the light");
     let passed = !declared || effect <= LEAK_LIMIT;
-    let verdict = if passed { "" } else { "; the scene says it is an enclosure: look for gaps and surfaces wound backwards" };
+    let verdict =
+        if passed { "" } else { "; the scene says it is an enclosure: look for gaps and surfaces wound backwards" };
     check("leaks", passed, format!("{consequence}{verdict}"))
 }
 
