@@ -1,1 +1,6 @@
-//! (to come)
+//! The candidates: radiosity methods that the reference judges.
+
+pub mod hemicube;
+mod info;
+
+pub use info::{MethodInfo, PatchVectors, RowSums};
