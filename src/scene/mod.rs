@@ -4,6 +4,7 @@
 //! state, divided into numbered patches. Everything downstream works on stages.
 
 mod model;
+mod plain;
 mod region;
 mod stage;
 
