@@ -5,6 +5,7 @@
 
 mod hash;
 mod model;
+mod plain;
 mod region;
 mod stage;
 
