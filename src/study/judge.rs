@@ -2,11 +2,12 @@
 
 use crate::io::StoredReference;
 use crate::metrics::{Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, shared_confidence};
-use crate::scene::Stage;
+use crate::math::DVec3;
+use crate::scene::{Material, NO_FACET, Patch, Region, Stage, StageSurface};
 use crate::solution::Radiosity;
 use crate::view::Photometry;
 
-/// Who is judged: patches or elements of a stage, or receivers of which nothing but the number is known.
+/// Who is judged: the patches or the elements of a stage.
 #[derive(Debug, Clone)]
 pub struct Receivers {
     /// Areas that take part, m^2.
@@ -30,12 +31,6 @@ impl Receivers {
         Self::of(stage, &stage.elements.iter().map(|e| (e.patch as usize, e.area)).collect::<Vec<_>>())
     }
 
-    /// Receivers of equal weight: for two solutions without their scene.
-    pub fn anonymous(n: usize, photometry: Photometry) -> Self {
-        let bands = photometry.bands.len();
-        Self { areas: vec![1.0; n], emission: vec![0.0; n * bands], surfaces: vec![String::new(); n], photometry }
-    }
-
     fn of(stage: &Stage, receivers: &[(usize, f64)]) -> Self {
         Self {
             areas: receivers.iter().map(|(_, area)| *area).collect(),
@@ -48,6 +43,36 @@ impl Receivers {
     /// Which of them take part.
     pub fn present(&self) -> Vec<bool> {
         self.areas.iter().map(|a| *a > 0.0).collect()
+    }
+}
+
+/// A stage that knows nothing but how many receivers there are, all of equal weight: for two solutions that come
+/// without their scene.
+pub fn anonymous_stage(n: usize, photometry: Photometry) -> Stage {
+    let zeros = vec![0.0; photometry.bands.len()];
+    let patch = |i: usize| Patch {
+        surface: 0,
+        material: 0,
+        facet: NO_FACET,
+        a: i as u32,
+        b: 0,
+        corners: Vec::new(),
+        normal: DVec3::ZERO,
+        area: 1.0,
+        region: Region::default(),
+        elements: i as u32..i as u32,
+    };
+    Stage {
+        name: "(no scene given)".into(),
+        state: 0,
+        enclosure: None,
+        materials: vec![Material { name: String::new(), reflectance: zeros.clone(), emission: zeros }],
+        surfaces: vec![StageSurface { name: String::new(), object: String::new() }],
+        facets: Vec::new(),
+        patches: (0..n).map(patch).collect(),
+        elements: Vec::new(),
+        cameras: Vec::new(),
+        photometry,
     }
 }
 

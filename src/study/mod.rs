@@ -5,7 +5,7 @@ mod record;
 mod run;
 mod session;
 
-pub use judge::{Against, JudgeError, Judgement, Question, Receivers, judge};
+pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, judge};
 pub use record::{Record, Setting};
 pub use run::{SolveOutcome, SolveRequest, reference, solve};
 pub use session::Session;

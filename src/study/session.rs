@@ -1,7 +1,7 @@
 //! A stage with its kernels: what every ray-casting run needs.
 
 use crate::estimate::{Plan, cast, patch_emitters};
-use crate::raycast::{BuiltinKernel, KernelError, KernelInfo, KernelKind, RayKernel, Tracer, open_kernel};
+use crate::raycast::{KernelError, KernelInfo, KernelKind, RayKernel, Tracer, open_kernels};
 use crate::sampling::{Role, Stream};
 use crate::scene::Stage;
 use std::sync::Arc;
@@ -17,18 +17,21 @@ pub struct Session<'a> {
     kernel: Arc<dyn RayKernel>,
     exact: Arc<dyn RayKernel>,
     enclosure: bool,
+    notice: Option<String>,
 }
 
 impl<'a> Session<'a> {
     /// Opens the kernel asked for and the double-precision one beside it.
     pub fn open(stage: &'a Stage, kind: KernelKind) -> Result<Self, KernelError> {
-        let exact: Arc<dyn RayKernel> = Arc::new(BuiltinKernel::new(stage));
-        let kernel: Arc<dyn RayKernel> = match kind {
-            KernelKind::Builtin => exact.clone(),
-            _ => Arc::from(open_kernel(kind, stage)?),
-        };
+        let kernels = open_kernels(kind, stage)?;
+        let exact: Arc<dyn RayKernel> = kernels.exact;
         let enclosure = stage.enclosure.unwrap_or_else(|| is_closed(stage, &exact));
-        Ok(Self { stage, kernel, exact, enclosure })
+        Ok(Self { stage, kernel: kernels.kernel, exact, enclosure, notice: kernels.notice })
+    }
+
+    /// What the user should know about the kernel: that there is no Embree, and why.
+    pub fn notice(&self) -> Option<&str> {
+        self.notice.as_deref()
     }
 
     /// The stage.

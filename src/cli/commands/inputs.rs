@@ -5,7 +5,8 @@ use crate::cli::console::Console;
 use crate::cli::exit::Failure;
 use crate::cli::values::StateChoice;
 use crate::estimate::Plan;
-use crate::io::{OpenOptions, atomic, open_scene};
+use crate::io::atomic;
+use crate::io::scene::{SceneOptions, open_scene};
 use crate::raycast::KernelKind;
 use crate::scene::{Scene, Stage};
 use crate::study::Session;
@@ -32,21 +33,17 @@ pub fn scene(spec: &str, max_edge: Option<f64>, console: &Console) -> Result<Sce
     if max_edge.is_some_and(|e| !(e > 0.0 && e.is_finite())) {
         return Err(Failure::input("--max-edge must be a length above 0, in metres"));
     }
-    let scene = open_scene(spec, &OpenOptions { max_edge })?;
+    let scene = open_scene(spec, &SceneOptions { max_edge_override: max_edge })?;
     scene.notices.iter().for_each(|n| console.notice(n));
     Ok(scene)
 }
 
 /// Lays out a state.
 pub fn stage_of(scene: &Scene, choice: StateChoice) -> Result<Stage, Failure> {
-    let last = scene.edits.len();
     let state = match choice {
         StateChoice::Initial => 0,
-        StateChoice::Final => last,
-        StateChoice::After(k) if k <= last => k,
-        StateChoice::After(k) => {
-            return Err(Failure::input(format!("--state {k}: scene \"{}\" has {last} edits", scene.name)));
-        }
+        StateChoice::Final => scene.edits.len(),
+        StateChoice::After(k) => scene.state_named(&k.to_string())?,
     };
     Ok(scene.at(state)?)
 }
@@ -55,12 +52,7 @@ pub fn stage_of(scene: &Scene, choice: StateChoice) -> Result<Stage, Failure> {
 pub fn session<'a>(stage: &'a Stage, kind: KernelKind, console: &Console) -> Result<Session<'a>, Failure> {
     let session = Session::open(stage, kind)?;
     let kernel = session.kernel();
-    if kind == KernelKind::Auto && kernel.name == "builtin" {
-        console.notice(
-            "no Embree 4 found: using the built-in double-precision kernel (slower, same answers, and no second \
-             kernel to check it); `etalon setup embree` brings Embree",
-        );
-    }
+    session.notice().into_iter().for_each(|n| console.notice(n));
     console.detail(&format!("kernel {} {}", kernel.name, kernel.version));
     console.detail(if session.is_enclosure() { "the scene is closed" } else { "the scene is open" });
     Ok(session)
