@@ -1,0 +1,136 @@
+//! Numbers as people read them.
+
+use crate::stats::Estimate;
+
+/// A number with its interval, both rounded to the same place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Shown {
+    pub value: String,
+    /// `None` for an exact number.
+    pub interval: Option<String>,
+}
+
+/// Places after the point that show two figures of an uncertainty; `None` where plain notation would not do.
+fn decimals(uncertainty: f64) -> Option<usize> {
+    let places = 1.0 - uncertainty.log10().floor();
+    (places.is_finite() && places <= 6.0).then_some(places.max(0.0) as usize)
+}
+
+/// Four significant figures, plain where that is short.
+pub(super) fn number(x: f64) -> String {
+    significant(x, 4)
+}
+
+/// `figures` significant figures, plain where that is short, else as 1.2e-7.
+pub(super) fn significant(x: f64, figures: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return if x == 0.0 { "0".into() } else { x.to_string() };
+    }
+    // Rounding first: 0.99996 has four figures as 1.000.
+    let rounded: f64 = format!("{x:.*e}", figures - 1).parse().unwrap_or(x);
+    let exponent = rounded.abs().log10().floor() as i32;
+    if !(-4..=6).contains(&exponent) {
+        return format!("{x:.*e}", figures.min(3) - 1);
+    }
+    format!("{rounded:.*}", (figures as i32 - 1 - exponent).max(0) as usize)
+}
+
+/// The same with its sign.
+pub(super) fn signed(x: f64) -> String {
+    if x > 0.0 { format!("+{}", number(x)) } else { number(x) }
+}
+
+/// A round number (a mark, a limit) without trailing zeros.
+pub(super) fn round_number(x: f64) -> String {
+    if x == 0.0 {
+        return "0".into();
+    }
+    // Ten figures keep what was typed and drop what binary fractions add.
+    let cleaned: f64 = format!("{x:.9e}").parse().unwrap_or(x);
+    if (1e-4..1e7).contains(&cleaned.abs()) { cleaned.to_string() } else { format!("{cleaned:e}") }
+}
+
+/// A limit or a confidence, as typed: 0.05 is `5 %`.
+pub(super) fn percent_exact(x: f64) -> String {
+    format!("{} %", round_number(100.0 * x))
+}
+
+/// A fraction as a percentage of three figures.
+pub(super) fn percent(x: f64) -> String {
+    format!("{} %", significant(100.0 * x, 3))
+}
+
+/// A fraction with its interval, as percentages; `sign` shows a plus.
+pub(super) fn percent_estimate(e: &Estimate, sign: bool) -> Shown {
+    let half_width = 50.0 * (e.high - e.low);
+    let plain = |places: usize| move |x: f64| format!("{x:.places$}");
+    let show: Box<dyn Fn(f64) -> String> = match decimals(half_width) {
+        Some(places) if half_width > 0.0 => Box::new(plain(places)),
+        _ => Box::new(|x| significant(x, 3)),
+    };
+    let with_sign = |x: f64| {
+        let text = show(100.0 * x);
+        // A negative number that rounds to nothing loses its sign.
+        let zero = text.chars().all(|c| "-0.".contains(c));
+        let text = if zero { text.trim_start_matches('-').to_string() } else { text };
+        if sign && x > 0.0 && !zero { format!("+{text}") } else { text }
+    };
+    let interval = (e.high > e.low).then(|| format!("{} to {} %", with_sign(e.low), with_sign(e.high)));
+    Shown { value: format!("{} %", with_sign(e.value)), interval }
+}
+
+/// A whole number in groups of three.
+pub(super) fn count(n: usize) -> String {
+    let digits = n.to_string();
+    let grouped: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|c| std::str::from_utf8(c).ok()).collect();
+    grouped.join(",")
+}
+
+/// Text without control characters: nothing in a name may steer a terminal.
+pub(super) fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn estimate(value: f64, low: f64, high: f64) -> Estimate {
+        Estimate { value, std_err: Some(0.1), low, high }
+    }
+
+    #[test]
+    fn value_and_interval_are_rounded_alike() {
+        let s = percent_estimate(&estimate(0.013412, 0.012911, 0.013913), false);
+        assert_eq!((s.value.as_str(), s.interval.as_deref()), ("1.341 %", Some("1.291 to 1.391 %")));
+        let s = percent_estimate(&estimate(0.4, 0.2, 0.6), false);
+        assert_eq!((s.value.as_str(), s.interval.as_deref()), ("40 %", Some("20 to 60 %")));
+        let s = percent_estimate(&estimate(-0.0000001, -0.002, 0.0021), true);
+        assert_eq!((s.value.as_str(), s.interval.as_deref()), ("0.00 %", Some("-0.20 to +0.21 %")));
+    }
+
+    #[test]
+    fn exact_and_tiny_numbers() {
+        let s = percent_estimate(&Estimate::exact(0.05), false);
+        assert_eq!((s.value.as_str(), s.interval), ("5.00 %", None));
+        assert_eq!(percent_estimate(&estimate(0.0, 0.0, 3e-11), false).interval.as_deref(), Some("0 to 3.00e-9 %"));
+        assert_eq!(percent(0.987), "98.7 %");
+        assert_eq!(percent_exact(0.05), "5 %");
+        assert_eq!(percent_exact(0.07), "7 %");
+        assert_eq!(percent_exact(0.0125), "1.25 %");
+    }
+
+    #[test]
+    fn four_figures() {
+        let shown = [0.0, 1.0, 0.99996, 12.3456, 0.00012345, 1.2345e-9, -42.0, 1234567.0, 3.5e9].map(number);
+        assert_eq!(shown, ["0", "1.000", "1.000", "12.35", "0.0001234", "1.23e-9", "-42.00", "1235000", "3.50e9"]);
+        assert_eq!((signed(1.5), signed(-1.5), signed(0.0)), ("+1.500".into(), "-1.500".into(), "0".into()));
+        assert_eq!([0.1 + 0.2, 2e-9, -0.015].map(round_number), ["0.3", "2e-9", "-0.015"]);
+        assert_eq!([0, 999, 1000, 12_700_000].map(count), ["0", "999", "1,000", "12,700,000"]);
+    }
+
+    #[test]
+    fn escape_sequences_do_not_reach_a_terminal() {
+        assert_eq!(printable("a\u{1b}[31mb\nc"), "a\u{fffd}[31mb\u{fffd}c");
+    }
+}
