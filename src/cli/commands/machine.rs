@@ -1,0 +1,1 @@
+//! `etalon setup embree` and `etalon doctor`
