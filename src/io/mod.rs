@@ -1,1 +1,3 @@
-//! (to come)
+//! Files: scenes, meshes, patches.
+
+pub mod scene;
