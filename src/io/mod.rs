@@ -6,6 +6,7 @@ mod folder;
 pub mod image;
 mod matrix;
 mod npz;
+pub mod scene;
 mod solution;
 mod store;
 
