@@ -70,22 +70,40 @@ impl Sums {
         self.reference - self.noise
     }
 
-    /// Variance of `<Y, Y>` to first order in the noise.
-    pub fn reference_variance(&self) -> f64 {
-        four_variances_of_mean(self.along_reference.iter().copied())
-    }
-
-    /// Variance of `<d, d> - q <Y, Y>` to first order in the noise: four times that of the mean of
-    /// `<e_r, D> - q <-e_r, Y>`.
-    pub fn variance(&self, q: f64) -> f64 {
-        four_variances_of_mean(self.along_difference.iter().zip(&self.along_reference).map(|(x, z)| x - q * z))
+    /// Variances of `<D, D> - q <Y, Y>` and of `<Y, Y>`, and their covariance, to first order in the noise.
+    pub fn spread(&self, q: f64) -> Spread {
+        let r = self.replicates as f64;
+        if r < 2.0 {
+            return Spread::default();
+        }
+        // d<D, D> = 2 <e, D> and d<Y, Y> = 2 <-e, Y>: twice twice, over the variance of a mean.
+        let scale = 4.0 / (r * (r - 1.0));
+        let mut spread = Spread::default();
+        for (x, z) in self.along_difference.iter().zip(&self.along_reference) {
+            let w = x - q * z;
+            spread.residual += scale * w * w;
+            spread.reference += scale * z * z;
+            spread.both += scale * w * z;
+        }
+        spread
     }
 }
 
-/// Four times the variance of the mean of values that sum to zero; 0 for a single one.
-fn four_variances_of_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let r = values.len() as f64;
-    if r < 2.0 { 0.0 } else { 4.0 * values.map(|v| v * v).sum::<f64>() / (r * (r - 1.0)) }
+/// Variances of `<D, D> - q <Y, Y>` (the residual) and `<Y, Y>`, and their covariance.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Spread {
+    pub residual: f64,
+    pub reference: f64,
+    pub both: f64,
+}
+
+impl Spread {
+    /// Of the mean over independent sets.
+    pub fn of_mean(sets: &[Spread]) -> Self {
+        let scale = 1.0 / (sets.len() * sets.len()) as f64;
+        let mean = |f: fn(&Spread) -> f64| scale * sets.iter().map(f).sum::<f64>();
+        Self { residual: mean(|s| s.residual), reference: mean(|s| s.reference), both: mean(|s| s.both) }
+    }
 }
 
 /// Inner products between bundles of replicates.
