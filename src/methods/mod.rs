@@ -1,5 +1,6 @@
 //! The candidates: radiosity methods that the reference judges.
 
+pub mod gather;
 pub mod hemicube;
 mod info;
 

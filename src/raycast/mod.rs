@@ -4,5 +4,9 @@
 //! which patch is decided in double precision by the [`Tracer`].
 
 mod kernel;
+mod locate;
+mod tracer;
 
 pub use kernel::{KernelError, KernelInfo, KernelKind, RayBatch, RayKernel};
+pub use locate::{BACK, ESCAPED};
+pub use tracer::{Tally, TraceScratch, Tracer};

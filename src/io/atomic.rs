@@ -1,0 +1,244 @@
+//! Files that are whole or not there: written beside their target, then renamed.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be written. The target is as it was before.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The folder is not there.
+    #[error("cannot write {target}: there is no folder {folder}; create it first")]
+    NoFolder {
+        /// File that was to be written.
+        target: PathBuf,
+        /// Folder it was to stand in.
+        folder: PathBuf,
+    },
+    /// What should be the folder is a file.
+    #[error("cannot write {target}: {folder} is not a folder; choose another place")]
+    NotAFolder {
+        /// File that was to be written.
+        target: PathBuf,
+        /// What stands where the folder should.
+        folder: PathBuf,
+    },
+    /// What should be a file is a folder.
+    #[error("cannot write {target}: it is a folder; name a file in it")]
+    IsAFolder {
+        /// File that was to be written.
+        target: PathBuf,
+    },
+    /// The system does not allow it.
+    #[error("cannot write {target}: no permission to write in {folder}; choose another place")]
+    Denied {
+        /// File that was to be written.
+        target: PathBuf,
+        /// Folder it was to stand in.
+        folder: PathBuf,
+    },
+    /// The medium failed, or is full.
+    #[error("cannot write {target}: {source}; nothing was left behind")]
+    Failed {
+        /// File that was to be written.
+        target: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// Writes a whole file, or leaves what was there.
+///
+/// # Errors
+/// [`WriteError`] names the file, what stands in the way and what to do.
+pub fn write(target: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    write_with(target, |out| out.write_all(bytes))
+}
+
+/// Writes a file as `fill` produces it; if that fails, what was there stays.
+///
+/// Devices and pipes are written to directly: there is nothing to keep whole, and a rename would replace them.
+///
+/// # Errors
+/// As [`write`]; errors of `fill` come back as [`WriteError::Failed`].
+pub fn write_with(target: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
+    // A link stays a link: what it points to is replaced.
+    let real = fs::canonicalize(target).unwrap_or_else(|_| target.to_path_buf());
+    let known = fs::metadata(&real).ok();
+    let done = match &known {
+        Some(m) if m.is_dir() => return Err(WriteError::IsAFolder { target: target.into() }),
+        Some(m) if !m.is_file() => into_device(&real, fill),
+        _ => beside(&real, known.map(|m| m.permissions()), fill),
+    };
+    done.map_err(|e| explain(target, &real, e))
+}
+
+/// Makes a folder and those above it.
+///
+/// # Errors
+/// As [`write`].
+pub fn create_folder(folder: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(folder).map_err(|e| match e.kind() {
+        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {
+            WriteError::NotAFolder { target: folder.into(), folder: first_file(folder).into() }
+        }
+        _ => explain(folder, folder, e),
+    })
+}
+
+fn into_device(target: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(File::options().write(true).open(target)?);
+    fill(&mut out)?;
+    out.flush()
+}
+
+fn beside(
+    target: &Path,
+    permissions: Option<fs::Permissions>,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".etalon-").suffix(".part");
+    if let Some(p) = permissions.or_else(ordinary_permissions) {
+        builder.permissions(p);
+    }
+    // The temporary file removes itself on every way out but the last.
+    let mut out = BufWriter::new(builder.tempfile_in(folder_of(target))?);
+    fill(&mut out)?;
+    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    file.as_file().sync_all()?;
+    file.persist(target).map(drop).map_err(|e| e.error)
+}
+
+/// What a file gets that is simply created; the process's mask still applies.
+#[cfg(unix)]
+fn ordinary_permissions() -> Option<fs::Permissions> {
+    Some(std::os::unix::fs::PermissionsExt::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn ordinary_permissions() -> Option<fs::Permissions> {
+    None
+}
+
+fn folder_of(target: &Path) -> &Path {
+    target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The uppermost part of a path that is not a folder.
+fn first_file(path: &Path) -> &Path {
+    path.ancestors().filter(|p| p.is_file()).last().unwrap_or(path)
+}
+
+fn explain(target: &Path, real: &Path, source: io::Error) -> WriteError {
+    let (target, folder) = (target.to_path_buf(), folder_of(real).to_path_buf());
+    if folder.exists() && !folder.is_dir() || source.kind() == io::ErrorKind::NotADirectory {
+        return WriteError::NotAFolder { target, folder: first_file(&folder).into() };
+    }
+    match source.kind() {
+        io::ErrorKind::NotFound if !folder.exists() => WriteError::NoFolder { target, folder },
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => WriteError::Denied { target, folder },
+        _ => WriteError::Failed { target, source },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entry = |e: io::Result<fs::DirEntry>| e.expect("entry").file_name().to_string_lossy().into_owned();
+        fs::read_dir(folder).expect("folder").map(entry).collect()
+    }
+
+    #[test]
+    fn a_file_is_replaced_whole() {
+        let dir = tempfile::tempdir().expect("dir");
+        let path = dir.path().join("a.csv");
+        write(&path, b"a much longer first version").expect("first");
+        write(&path, b"second").expect("second");
+        assert_eq!(fs::read(&path).expect("read"), b"second");
+        assert_eq!(names(dir.path()), ["a.csv"]);
+    }
+
+    #[test]
+    fn a_failure_half_way_leaves_what_was_there() {
+        let dir = tempfile::tempdir().expect("dir");
+        let path = dir.path().join("a.csv");
+        write(&path, b"old").expect("old");
+        let failed = write_with(&path, |out| {
+            out.write_all(&[b'x'; 100_000])?;
+            Err(io::Error::other("out of ink"))
+        });
+        assert!(failed.expect_err("fails").to_string().contains("out of ink"));
+        assert_eq!(fs::read(&path).expect("read"), b"old");
+        assert_eq!(names(dir.path()), ["a.csv"]);
+    }
+
+    #[test]
+    fn what_stands_in_the_way_is_named() {
+        let dir = tempfile::tempdir().expect("dir");
+        let missing = dir.path().join("no/such/report.html");
+        let e = write(&missing, b"x").expect_err("no folder");
+        assert!(matches!(&e, WriteError::NoFolder { folder, .. } if folder.ends_with("no/such")), "{e}");
+        assert!(e.to_string().contains("create it"), "{e}");
+        assert_eq!(names(dir.path()), [""; 0]);
+
+        assert!(matches!(write(dir.path(), b"x"), Err(WriteError::IsAFolder { .. })));
+        write(&dir.path().join("file"), b"x").expect("file");
+        let under = write(&dir.path().join("file/report.html"), b"x");
+        assert!(matches!(&under, Err(WriteError::NotAFolder { folder, .. }) if folder.ends_with("file")), "{under:?}");
+        let made = create_folder(&dir.path().join("file/deep/er"));
+        assert!(matches!(&made, Err(WriteError::NotAFolder { folder, .. }) if folder.ends_with("file")), "{made:?}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_without_permission_is_left_alone() {
+        use std::os::unix::fs::PermissionsExt;
+        let dir = tempfile::tempdir().expect("dir");
+        fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o555)).expect("chmod");
+        let path = dir.path().join("a.csv");
+        let attempt = write(&path, b"x");
+        // The superuser may write anyway; then the file has to be whole.
+        match attempt {
+            Ok(()) => assert_eq!(fs::read(&path).expect("read"), b"x"),
+            Err(e) => assert!(matches!(e, WriteError::Denied { .. }), "{e}"),
+        }
+        fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o755)).expect("chmod");
+        assert!(names(dir.path()).iter().all(|n| n == "a.csv"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_and_links_stay_what_they_are() {
+        use std::os::unix::fs::FileTypeExt;
+        let dir = tempfile::tempdir().expect("dir");
+        let socket = dir.path().join("socket");
+        let _bound = std::os::unix::net::UnixListener::bind(&socket).expect("bind");
+        // A socket cannot be opened as a file; what counts is that it is not replaced by one.
+        write(&socket, b"x").expect_err("no file");
+        assert!(fs::metadata(&socket).expect("socket").file_type().is_socket());
+        let (real, link) = (dir.path().join("real"), dir.path().join("link"));
+        write(&real, b"old").expect("old");
+        std::os::unix::fs::symlink(&real, &link).expect("link");
+        write(&link, b"new").expect("new");
+        assert!(fs::symlink_metadata(&link).expect("link").is_symlink());
+        assert_eq!(fs::read(&real).expect("real"), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_are_those_of_an_ordinary_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let dir = tempfile::tempdir().expect("dir");
+        let mode = |p: &Path| fs::metadata(p).expect("file").permissions().mode() & 0o777;
+        let (ours, plain) = (dir.path().join("ours"), dir.path().join("plain"));
+        write(&ours, b"x").expect("ours");
+        fs::write(&plain, b"x").expect("plain");
+        assert_eq!(mode(&ours), mode(&plain));
+        fs::set_permissions(&ours, fs::Permissions::from_mode(0o640)).expect("chmod");
+        write(&ours, b"y").expect("again");
+        assert_eq!(mode(&ours), 0o640);
+    }
+}

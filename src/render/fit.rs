@@ -1,0 +1,122 @@
+//! A camera for a scene that has none.
+
+use super::Visibility;
+use crate::math::DVec3;
+use crate::raycast::Tracer;
+use crate::scene::Stage;
+use crate::view::Camera;
+
+/// Size of a fitted picture, pixels.
+const SIZE: [u32; 2] = [640, 480];
+/// Size of the trial pictures that candidates are judged by.
+const TRIAL: [u32; 2] = [48, 36];
+/// Vertical field of view from outside and from inside, degrees.
+const FOV: [f64; 2] = [38.0, 72.0];
+
+/// The camera that shows most of the scene: three-quarter views from outside and from the corners inside are
+/// tried, and the one that sees the fronts of the largest share of the surfaces wins.
+///
+/// z is taken as up.
+pub fn fit_camera(tracer: &Tracer) -> Camera {
+    let stage = tracer.stage();
+    let mut best: Option<(f64, Camera)> = None;
+    for camera in candidates(stage) {
+        let score = score(tracer, &camera);
+        // The first of equals stays: the order of candidates is the order of preference.
+        if best.as_ref().is_none_or(|(s, _)| score > *s + 1e-9) {
+            best = Some((score, camera));
+        }
+    }
+    let camera = best.map_or_else(|| from_outside(DVec3::ZERO, 1.0, DVec3::new(1.0, -1.0, 1.0)), |(_, c)| c);
+    Camera { size: SIZE, ..camera }
+}
+
+fn candidates(stage: &Stage) -> Vec<Camera> {
+    let (low, high) = stage.bounds();
+    if !(high - low).is_finite() {
+        return Vec::new();
+    }
+    let (centre, size) = ((low + high) * 0.5, high - low);
+    let radius = (0.5 * size.length()).max(1e-6);
+    let mut all: Vec<Camera> = outside_directions().map(|d| from_outside(centre, radius, d)).collect();
+    // A flat scene has no inside.
+    if size.min_element() > 1e-3 * radius {
+        all.extend(inside_corners().map(|c| from_inside(centre, size, c)));
+    }
+    all
+}
+
+/// Towards the eye: three-quarter views first, steep and shallow, then along the axes.
+fn outside_directions() -> impl Iterator<Item = DVec3> {
+    let around = (0..16).map(|k| (f64::from(k) * 22.5 - 67.5).to_radians());
+    let raised = [28.0, 55.0, -28.0, 5.0].map(|d: f64| d.to_radians());
+    let ring = raised.into_iter().flat_map(move |e| around.clone().map(move |a| (a, e)));
+    let tilted = ring.map(|(a, e)| DVec3::new(a.cos() * e.cos(), a.sin() * e.cos(), e.sin()));
+    tilted.chain([DVec3::new(0.0, -0.06, 1.0), DVec3::new(0.0, -0.06, -1.0)])
+}
+
+/// Corners of the bounding box as fractions of its half size, a little inside; eye height first.
+fn inside_corners() -> impl Iterator<Item = DVec3> {
+    let sides = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    [0.2, 0.9, -0.9].into_iter().flat_map(move |z| sides.map(|(x, y)| DVec3::new(0.9 * x, 0.9 * y, z)))
+}
+
+fn from_outside(centre: DVec3, radius: f64, towards_eye: DVec3) -> Camera {
+    let distance = 1.04 * radius / (0.5 * FOV[0].to_radians()).sin();
+    fitted(centre + towards_eye.normalize() * distance, centre, FOV[0])
+}
+
+fn from_inside(centre: DVec3, size: DVec3, corner: DVec3) -> Camera {
+    let eye = centre + 0.5 * size * corner;
+    let target = centre - 0.5 * size * corner * DVec3::new(0.35, 0.35, 0.5);
+    fitted(eye, target, FOV[1])
+}
+
+fn fitted(eye: DVec3, target: DVec3, fov: f64) -> Camera {
+    Camera { name: "fitted".into(), eye, target, up: DVec3::Z, fov, size: TRIAL }
+}
+
+/// How much a camera shows: the share of all surfaces (by area) whose fronts it sees, plus how little of the
+/// picture is wasted on backs and background.
+fn score(tracer: &Tracer, camera: &Camera) -> f64 {
+    let stage = tracer.stage();
+    let seen = Visibility::cast(tracer, camera, 1);
+    let [front, back, _] = seen.shares();
+    let mut in_sight = vec![false; stage.facets.len()];
+    for pixel in 0..seen.pixel_count() {
+        if let Some(patch) = stage.patches.get(seen.samples(pixel)[0] as usize) {
+            in_sight[patch.facet as usize] = true;
+        }
+    }
+    let area = |f: usize| crate::math::area(&stage.facets[f].vertices);
+    let total: f64 = (0..stage.facets.len()).map(area).sum();
+    let shown: f64 = (0..stage.facets.len()).filter(|f| in_sight[*f]).map(area).sum();
+    shown / total + 0.25 * front - 0.5 * back
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::testing::{plate, room, tracer};
+
+    #[test]
+    fn a_closed_room_is_seen_from_inside() {
+        let stage = room();
+        let camera = fit_camera(&tracer(&stage));
+        let (low, high) = stage.bounds();
+        assert!(camera.eye.cmpgt(low).all() && camera.eye.cmplt(high).all(), "{:?}", camera.eye);
+        assert_eq!(camera.size, SIZE);
+    }
+
+    #[test]
+    fn a_plate_is_seen_from_its_front_and_wholly() {
+        for turned in [false, true] {
+            let stage = plate(turned);
+            let camera = fit_camera(&tracer(&stage));
+            assert_eq!(camera.eye.z > 0.0, !turned, "{:?}", camera.eye);
+            let seen = Visibility::cast(&tracer(&stage), &camera, 1);
+            assert_eq!(seen.coverage(0), [], "there is a margin");
+            assert!(seen.middles(&[0, 1, 2, 3]).iter().all(Option::is_some));
+        }
+    }
+}

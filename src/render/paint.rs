@@ -1,0 +1,93 @@
+//! Rasters: colours of patches through a visibility pass.
+
+use super::{LinearRgb, Visibility, to_srgb8};
+use crate::raycast::{BACK, ESCAPED};
+use rayon::prelude::*;
+
+/// An eight-bit picture, rows from the top, four bytes a pixel: sRGB and straight alpha.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Raster {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// `4 * width * height` bytes.
+    pub rgba: Vec<u8>,
+}
+
+/// Linear greys of the hatching that says "a black back": it radiates nothing.
+const BACK_GREYS: [f64; 2] = [0.045, 0.075];
+/// Linear greys of the hatching that says "no value here".
+const BLANK_GREYS: [f64; 2] = [0.42, 0.30];
+
+/// Paints each patch in its colour (linear, by patch number); `None` is hatched. Backs are hatched dark, the
+/// background is left transparent, and the samples of a pixel are mixed in linear light.
+pub fn paint(visibility: &Visibility, palette: &[Option<LinearRgb>]) -> Raster {
+    let [width, height] = visibility.size();
+    let pixel = |p: usize| mix(visibility, palette, p, width as usize);
+    let rgba = (0..visibility.pixel_count()).into_par_iter().flat_map_iter(pixel).collect();
+    Raster { width, height, rgba }
+}
+
+fn mix(visibility: &Visibility, palette: &[Option<LinearRgb>], pixel: usize, width: usize) -> [u8; 4] {
+    let samples = visibility.samples(pixel);
+    let (x, y) = (pixel % width, pixel / width);
+    let (mut sum, mut covered) = ([0.0; 3], 0u32);
+    for landing in samples.iter().filter(|l| **l != ESCAPED) {
+        let colour = match palette.get(*landing as usize) {
+            Some(Some(rgb)) => *rgb,
+            _ => [hatch(*landing == BACK, x, y); 3],
+        };
+        for c in 0..3 {
+            sum[c] += colour[c];
+        }
+        covered += 1;
+    }
+    if covered == 0 {
+        return [0; 4];
+    }
+    let [r, g, b] = sum.map(|s| to_srgb8(s / f64::from(covered)));
+    [r, g, b, (255.0 * f64::from(covered) / samples.len() as f64).round() as u8]
+}
+
+/// Diagonal stripes, those of backs leaning the other way.
+fn hatch(back: bool, x: usize, y: usize) -> f64 {
+    let greys = if back { BACK_GREYS } else { BLANK_GREYS };
+    let along = if back { x + y } else { x + 7 * y };
+    greys[usize::from(along % 8 < 3)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::testing::{plate, room, tracer};
+    use crate::render::{SUPERSAMPLING, fit_camera};
+
+    #[test]
+    fn background_is_clear_edges_are_soft_and_insides_are_exact() {
+        let stage = plate(false);
+        let tracer = tracer(&stage);
+        let seen = Visibility::cast(&tracer, &fit_camera(&tracer), SUPERSAMPLING);
+        let raster = paint(&seen, &[Some([0.5; 3]), Some([0.5; 3]), None, Some([0.5; 3])]);
+        let alphas: Vec<u8> = raster.rgba.chunks(4).map(|p| p[3]).collect();
+        assert_eq!(alphas[0], 0);
+        assert!([64, 128, 191].iter().any(|a| alphas.contains(a)));
+        let inside = (0..seen.pixel_count()).find(|p| seen.coverage(*p) == [(0, 1.0)]).expect("in sight");
+        assert_eq!(raster.rgba[4 * inside..4 * inside + 4], [188, 188, 188, 255]);
+        let blank: Vec<u8> =
+            (0..seen.pixel_count()).filter(|p| seen.coverage(*p) == [(2, 1.0)]).map(|p| raster.rgba[4 * p]).collect();
+        assert!(blank.contains(&to_srgb8(BLANK_GREYS[0])) && blank.contains(&to_srgb8(BLANK_GREYS[1])));
+    }
+
+    #[test]
+    fn the_thread_count_does_not_matter() {
+        let stage = room();
+        let tracer = tracer(&stage);
+        let palette: Vec<_> = (0..stage.patch_count()).map(|i| Some([i as f64 / 900.0, 0.3, 0.1])).collect();
+        let picture = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| paint(&Visibility::cast(&tracer, &stage.cameras[0], SUPERSAMPLING), &palette))
+        };
+        assert_eq!(picture(1), picture(3));
+    }
+}
