@@ -49,13 +49,13 @@ pub struct WorstLine {
 }
 
 const RMS: &str = "Area-weighted root-mean-square difference of luminance, relative to the reference (eq. 7)";
-const TOP1: &str = "The same over the 1 % of patches that change most";
-const REFLECTED: &str = "The same on reflected light alone, emission left out";
-const BIAS: &str = "Light in excess (+) or missing (-) over the whole scene";
-const BAND: &str = "The same in this band alone";
+const TOP1: &str = "Eq. 7 over the 1 % of patches that change most";
+const REFLECTED: &str = "Eq. 7 on reflected light alone, emission left out";
+const BIAS: &str = "Light in excess (+) or missing (\u{2212}) over the whole scene";
+const BAND: &str = "Eq. 7 in this band alone";
 const FLOOR: &str =
     "What eq. 7 would read for a perfect solution from the reference's own noise; already taken out above";
-const SOLUTION_NOISE: &str = "The same from the solution's own stated errors; never part of the verdict";
+const SOLUTION_NOISE: &str = "Noise that the solution states of itself; never part of the verdict";
 const SHARE: &str = "Share of patches that emit in what the error is measured against";
 
 /// All metrics of a record, in order of display.

@@ -180,7 +180,7 @@ fn facts(record: &Record) -> Vec<Pair> {
         pair("Patches", count(c.patches)),
         pair("Bands", record.stage.photometry.bands.join(", ")),
         pair("Judged against", truth),
-        pair("Confidence", percent_exact(c.confidence)),
+        pair("Confidence", minus(&percent_exact(c.confidence))),
     ]
 }
 
@@ -188,8 +188,8 @@ fn metrics(record: &Record) -> Metrics {
     let lines = metric_lines(record);
     let end = axis_end(&lines);
     Metrics {
-        confidence: percent_exact(record.comparison.confidence),
-        axis_end: end.map(|e| format!("{} %", significant(100.0 * e, 2))),
+        confidence: minus(&percent_exact(record.comparison.confidence)),
+        axis_end: end.map(|e| minus(&format!("{} %", significant(100.0 * e, 2)))),
         rows: lines.into_iter().map(|l| metric_row(l, end)).collect(),
     }
 }
@@ -208,7 +208,7 @@ fn metric_row(line: MetricLine, end: Option<f64>) -> MetricRow {
         meaning: line.meaning,
         value: minus(&line.value),
         interval: line.interval.map(|i| minus(&i)),
-        limit: line.limit,
+        limit: line.limit.map(|l| minus(&l)),
     }
 }
 
