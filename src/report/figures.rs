@@ -2,7 +2,7 @@
 
 use super::ReportError;
 use super::artifact::check_shape;
-use super::format::{percent, round_number, significant};
+use super::format::{round_number, significant};
 use crate::render::{
     Exposure, Field, LinearRgb, Raster, Scale, View, Visibility, difference, in_standard_errors, luminance,
     luminance_std_err, paint, relative_difference, to_srgb8,
@@ -165,7 +165,10 @@ fn natural(record: &Record, luminances: &[f64], areas: &[f64]) -> Vec<Plate> {
 
 fn false_colour(kind: &'static str, title: &'static str, what: &str, field: &Field, scale: Scale, unit: Unit) -> Plate {
     let beyond = if scale.beyond > 0.0 {
-        format!(" {} of the area lies beyond the range and has its end colours.", percent(scale.beyond))
+        format!(
+            " {} % of the area lies beyond the range and has its end colours.",
+            significant(100.0 * scale.beyond, 2)
+        )
     } else {
         String::new()
     };

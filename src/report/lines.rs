@@ -1,6 +1,6 @@
 //! The two tables every report shows, built once: metrics, and the worst patches.
 
-use super::format::{number, percent, percent_estimate, percent_exact, signed, significant};
+use super::format::{column, percent, percent_estimate, percent_exact, significant};
 use crate::metrics::{Verdict, WorstPatch};
 use crate::render::luminance_std_err;
 use crate::stats::Estimate;
@@ -49,13 +49,13 @@ pub struct WorstLine {
 }
 
 const RMS: &str = "Area-weighted root-mean-square difference of luminance, relative to the reference (eq. 7)";
-const TOP1: &str = "The same over the 1 % of patches that change most";
-const REFLECTED: &str = "The same on reflected light alone, emission left out";
-const BIAS: &str = "Light in excess (+) or missing (-) over the whole scene";
-const BAND: &str = "The same in this band alone";
+const TOP1: &str = "Eq. 7 over the 1 % of patches that change most";
+const REFLECTED: &str = "Eq. 7 on reflected light alone, emission left out";
+const BIAS: &str = "Light in excess (+) or missing (\u{2212}) over the whole scene";
+const BAND: &str = "Eq. 7 in this band alone";
 const FLOOR: &str =
     "What eq. 7 would read for a perfect solution from the reference's own noise; already taken out above";
-const SOLUTION_NOISE: &str = "The same from the solution's own stated errors; never part of the verdict";
+const SOLUTION_NOISE: &str = "Noise that the solution states of itself; never part of the verdict";
 const SHARE: &str = "Share of patches that emit in what the error is measured against";
 
 /// All metrics of a record, in order of display.
@@ -113,19 +113,24 @@ fn plain(key: &str, name: &str, meaning: &'static str, fraction: f64) -> MetricL
 /// The worst patches of a record.
 pub fn worst_lines(record: &Record) -> Vec<WorstLine> {
     let own = luminance_std_err(&record.stage.photometry, &record.solution).values;
-    let line = |w: &WorstPatch| {
+    let worst = &record.comparison.worst;
+    let of = |get: fn(&WorstPatch) -> f64, sign| column(&worst.iter().map(get).collect::<Vec<_>>(), sign);
+    let references = of(|w| w.reference, false);
+    let solutions = of(|w| w.solution, false);
+    let differences = of(|w| w.difference, true);
+    let line = |(k, w): (usize, &WorstPatch)| {
         let error = w.std_err.map(|e| e.hypot(own.get(w.patch).copied().flatten().unwrap_or(0.0)));
         WorstLine {
             patch: w.patch,
             surface: w.surface.clone(),
-            reference: number(w.reference),
-            solution: number(w.solution),
-            difference: signed(w.difference),
+            reference: references[k].clone(),
+            solution: solutions[k].clone(),
+            difference: differences[k].clone(),
             relative: (w.reference != 0.0).then(|| signed_percent(w.difference / w.reference)),
             in_std_errs: error.filter(|e| *e > 0.0).map(|e| with_sign(w.difference / e)),
         }
     };
-    record.comparison.worst.iter().map(line).collect()
+    worst.iter().enumerate().map(line).collect()
 }
 
 fn signed_percent(x: f64) -> String {

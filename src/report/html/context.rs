@@ -4,7 +4,7 @@ use super::bars::{Bar, axis_end, bar};
 use crate::metrics::Verdict;
 use crate::report::figures::{Figure, ViewFigures};
 use crate::report::format::{count, percent_exact, round_number, significant};
-use crate::report::{ColourBar, MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
+use crate::report::{ColourBar, Mark, MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
 use crate::study::Record;
 use serde::Serialize;
 
@@ -101,6 +101,10 @@ pub(super) struct MarkBlock {
     pub patch: usize,
     pub x: String,
     pub y: String,
+    pub radius: String,
+    pub font: String,
+    /// False where a worse patch is so near that two labels would cover each other: a dot has to do.
+    pub labelled: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -176,7 +180,7 @@ fn facts(record: &Record) -> Vec<Pair> {
         pair("Patches", count(c.patches)),
         pair("Bands", record.stage.photometry.bands.join(", ")),
         pair("Judged against", truth),
-        pair("Confidence", percent_exact(c.confidence)),
+        pair("Confidence", minus(&percent_exact(c.confidence))),
     ]
 }
 
@@ -184,8 +188,8 @@ fn metrics(record: &Record) -> Metrics {
     let lines = metric_lines(record);
     let end = axis_end(&lines);
     Metrics {
-        confidence: percent_exact(record.comparison.confidence),
-        axis_end: end.map(|e| format!("{} %", significant(100.0 * e, 2))),
+        confidence: minus(&percent_exact(record.comparison.confidence)),
+        axis_end: end.map(|e| minus(&format!("{} %", significant(100.0 * e, 2)))),
         rows: lines.into_iter().map(|l| metric_row(l, end)).collect(),
     }
 }
@@ -204,7 +208,7 @@ fn metric_row(line: MetricLine, end: Option<f64>) -> MetricRow {
         meaning: line.meaning,
         value: minus(&line.value),
         interval: line.interval.map(|i| minus(&i)),
-        limit: line.limit,
+        limit: line.limit.map(|l| minus(&l)),
     }
 }
 
@@ -218,14 +222,6 @@ fn view_block(view: &ViewFigures) -> ViewBlock {
 }
 
 fn figure_block(view: &ViewFigures, figure: &Figure) -> FigureBlock {
-    // Reference and solution stay unmarked: they are looked at side by side.
-    let marked = matches!(figure.kind, "difference" | "relative" | "z");
-    let mark = |m: &crate::report::Mark| MarkBlock {
-        rank: m.rank,
-        patch: m.patch,
-        x: format!("{:.1}", m.x),
-        y: format!("{:.1}", m.y),
-    };
     FigureBlock {
         id: format!("{}-{}", view.stem, figure.kind),
         kind: figure.kind,
@@ -236,8 +232,31 @@ fn figure_block(view: &ViewFigures, figure: &Figure) -> FigureBlock {
         width: figure.raster.width,
         height: figure.raster.height,
         bar: figure.bar.as_ref().map(bar_block),
-        marks: if marked { view.marks.iter().map(mark).collect() } else { Vec::new() },
+        // One picture with numbers is enough; the others are to be looked at.
+        marks: if figure.kind == "difference" { mark_blocks(view, figure.raster.width) } else { Vec::new() },
     }
+}
+
+/// Labels sized to the picture, worst first.
+fn mark_blocks(view: &ViewFigures, width: u32) -> Vec<MarkBlock> {
+    let radius = f64::from(width) / 72.0;
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    let mut block = |m: &Mark| {
+        let free = kept.iter().all(|(x, y)| (x - m.x).hypot(y - m.y) > 2.0 * radius);
+        if free {
+            kept.push((m.x, m.y));
+        }
+        MarkBlock {
+            rank: m.rank,
+            patch: m.patch,
+            x: format!("{:.1}", m.x),
+            y: format!("{:.1}", m.y),
+            radius: format!("{:.1}", if free { radius } else { 0.35 * radius }),
+            font: format!("{:.1}", 1.2 * radius),
+            labelled: free,
+        }
+    };
+    view.marks.iter().map(&mut block).collect()
 }
 
 fn bar_block(bar: &ColourBar) -> BarBlock {
