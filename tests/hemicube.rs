@@ -43,7 +43,7 @@ mod table {
     #[test]
     fn midpoint_sums_are_those_of_1985() {
         let known = [
-            (10, 0.555583289713908, 0.112469265144273, 1.005460350291000),
+            (10, 0.555583289713908, 0.112469265144273, 1.005460350291),
             (20, 0.554491037559693, 0.111716594376106, 1.001357415064116),
             (50, 0.554184779162951, 0.111508017510079, 1.000216849203267),
             (64, 0.554162041919093, 0.111492574280204, 1.000132339039911),
@@ -80,7 +80,7 @@ mod table {
             (50, true, 24, 24, 5.970952615743057e-5, 5.969891939568165e-5),
             (50, true, 24, 0, 1.324826486402487e-4, 1.324657227742041e-4),
             (50, false, 0, 0, 1.015882154090547e-5, 1.016963842782818e-5),
-            (50, false, 0, 24, 1.297976891107969e-4, 1.298164083187200e-4),
+            (50, false, 0, 24, 1.297976891107969e-4, 1.2981640831872e-4),
             (50, false, 24, 0, 2.648932200660443e-6, 2.649314455484083e-6),
             (50, false, 24, 24, 5.850465066603051e-5, 5.850494100776802e-5),
             (100, true, 0, 0, 1.272560863695477e-4, 1.272730401665281e-4),
@@ -288,7 +288,7 @@ mod centre_value {
         ];
         for (plates, centre, n) in known {
             let f = item_sum(&obstructed(plates), &exact(n));
-            assert!(close(f, centre, 1e-11), "{n}: {f} for {centre}");
+            assert!(close(f, centre, 6e-11), "{n}: {f} for {centre}");
         }
     }
 }
@@ -453,6 +453,19 @@ mod sides {
     }
 
     #[test]
+    fn the_sides_of_a_plate_may_be_rounded_apart() {
+        for gap in [-1e-9, 1e-9] {
+            let mut b = Build(opposed(1.0));
+            let up = b.surface(&flat(-0.5, -0.5, 0.5, 0.5, 0.5), Grid::Whole, 0.5, 0.0);
+            let down = b.back_of(&flat(-0.5, -0.5, 0.5, 0.5, 0.5 + gap), Grid::Whole, 0.5, 0.0);
+            let f = factors(&b.0, &params(50));
+            for (i, j) in [(0, down), (1, up), (up, 1), (down, 0)] {
+                assert_eq!((f.row(i).count(), f.row(i).next().unwrap().0), (1, j), "gap {gap}, row {i}");
+            }
+        }
+    }
+
+    #[test]
     fn a_wall_wholly_behind_is_not_seen() {
         let mut b = ground();
         b.surface(&[p(2.0, -1.0, -1.0), p(2.0, -1.0, 0.0), p(2.0, 1.0, 0.0), p(2.0, 1.0, -1.0)], Grid::Whole, 0.5, 0.0);
@@ -544,6 +557,41 @@ mod contact {
         let (radiosity, info) = solve(&b.0, &set, &|_| ()).unwrap();
         assert_eq!(radiosity.of(plate), &[0.0], "an absent lamp is dark");
         assert!(info.row_sums.min > 0.2, "absent patches do not count in the row sums: {:?}", info.row_sums);
+    }
+}
+
+mod builtin {
+    use super::*;
+    use etalon::io::scene::builtin;
+
+    #[test]
+    fn closed_rooms_with_furniture_on_the_floor_are_full() {
+        for name in ["furnace", "furnace-l", "l-room", "furnished-room", "dynamic-cube"] {
+            let scene = builtin(name).unwrap();
+            let stage = scene.at(scene.edits.len()).unwrap();
+            for set in [params(20), Params { rotation: 45.0, ..params(50) }] {
+                let total = DeltaTable::new(set.resolution, set.delta).total();
+                let f = factors(&stage, &set);
+                for (i, patch) in stage.patches.iter().enumerate() {
+                    let wanted = if patch.is_present() { total } else { 0.0 };
+                    assert!(close(f.row_sum(i), wanted, 1e-12), "{name}, {set}, patch {i}: {}", f.row_sum(i));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn in_the_cornell_box_nothing_is_seen_from_behind() {
+        let stage = builtin("cornell-box-coarse").unwrap().at(0).unwrap();
+        let (f, total) = (factors(&stage, &params(50)), DeltaTable::new(50, Delta::Midpoint).total());
+        for i in 0..f.n {
+            let seen = item_buffer(&stage, i, &params(50)).unwrap();
+            let backs = seen.map_or(0, |s| s.count(Item::BACK));
+            assert_eq!(backs, 0, "patch {i} on {}", stage.surface_name(i));
+            assert!(f.row_sum(i) < total + 1e-12);
+        }
+        // Light leaves through the open front.
+        assert!((0..f.n).any(|i| f.row_sum(i) < 0.9));
     }
 }
 

@@ -14,14 +14,15 @@ const TRIAL: [u32; 2] = [48, 36];
 const FOV: [f64; 2] = [38.0, 72.0];
 
 /// The camera that shows most of the scene: three-quarter views from outside and from the corners inside are
-/// tried, and the one that sees the fronts of the largest share of the surfaces wins.
+/// tried, and the one that sees the fronts of the largest area wins, fewer backs and less background breaking ties.
 ///
 /// z is taken as up.
 pub fn fit_camera(tracer: &Tracer) -> Camera {
-    let stage = tracer.stage();
+    let tried: Vec<(Camera, Sight)> = candidates(tracer.stage()).into_iter().map(|c| look(tracer, c)).collect();
+    let most = tried.iter().map(|(_, s)| s.area).fold(0.0, f64::max);
     let mut best: Option<(f64, Camera)> = None;
-    for camera in candidates(stage) {
-        let score = score(tracer, &camera);
+    for (camera, sight) in tried {
+        let score = sight.score(most);
         // The first of equals stays: the order of candidates is the order of preference.
         if best.as_ref().is_none_or(|(s, _)| score > *s + 1e-9) {
             best = Some((score, camera));
@@ -76,22 +77,31 @@ fn fitted(eye: DVec3, target: DVec3, fov: f64) -> Camera {
     Camera { name: "fitted".into(), eye, target, up: DVec3::Z, fov, size: TRIAL }
 }
 
-/// How much a camera shows: the share of all surfaces (by area) whose fronts it sees, plus how little of the
-/// picture is wasted on backs and background.
-fn score(tracer: &Tracer, camera: &Camera) -> f64 {
-    let stage = tracer.stage();
-    let seen = Visibility::cast(tracer, camera, 1);
-    let [front, back, _] = seen.shares();
-    let mut in_sight = vec![false; stage.facets.len()];
-    for pixel in 0..seen.pixel_count() {
-        if let Some(patch) = stage.patches.get(seen.samples(pixel)[0] as usize) {
-            in_sight[patch.facet as usize] = true;
-        }
+/// How much a camera shows.
+struct Sight {
+    /// Area of the patches in sight, m^2.
+    area: f64,
+    /// Share of the picture that shows patches, and backs.
+    front: f64,
+    back: f64,
+}
+
+impl Sight {
+    fn score(&self, most: f64) -> f64 {
+        // What is in sight counts most, and relative to the best: few rays never meet all patches of a large scene.
+        self.area / most.max(f64::MIN_POSITIVE) + 0.15 * self.front - 0.5 * self.back
     }
-    let area = |f: usize| crate::math::area(&stage.facets[f].vertices);
-    let total: f64 = (0..stage.facets.len()).map(area).sum();
-    let shown: f64 = (0..stage.facets.len()).filter(|f| in_sight[*f]).map(area).sum();
-    shown / total + 0.25 * front - 0.5 * back
+}
+
+fn look(tracer: &Tracer, camera: Camera) -> (Camera, Sight) {
+    let patches = &tracer.stage().patches;
+    let seen = Visibility::cast(tracer, &camera, 1);
+    let [front, back, _] = seen.shares();
+    let mut in_sight: Vec<u32> = (0..seen.pixel_count()).map(|p| seen.samples(p)[0]).collect();
+    in_sight.sort_unstable();
+    in_sight.dedup();
+    let area = in_sight.iter().filter_map(|i| patches.get(*i as usize)).map(|p| p.area).sum();
+    (camera, Sight { area, front, back })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::ReportError;
 use super::artifact::check_shape;
+use super::asked::Level;
 use super::format::{round_number, significant};
 use crate::render::{
     Exposure, Field, LinearRgb, Raster, Scale, View, Visibility, difference, in_standard_errors, luminance,
@@ -60,8 +61,8 @@ pub struct ColourBar {
 pub struct Mark {
     /// Rank, 1 for the worst.
     pub rank: usize,
-    /// Patch number.
-    pub patch: usize,
+    /// Number of the patch, or of the element where elements are judged.
+    pub number: usize,
     /// Pixels from the left.
     pub x: f64,
     /// Pixels from the top.
@@ -150,9 +151,9 @@ fn natural(record: &Record, luminances: &[f64], areas: &[f64]) -> Vec<Plate> {
     let is_emitter: Vec<bool> = (0..stage.patch_count()).map(|i| stage.emission(i).iter().any(|e| *e > 0.0)).collect();
     let exposure = Exposure::fit(&stage.photometry, luminances, areas, &is_emitter);
     let shown = format!(
-        "One linear scale for both pictures, then the sRGB curve: {} W/m\u{b2} of luminance come out as 80 % of white \
-         (99 % of the reflecting area stays below), lamps may burn out.",
-        significant(exposure.reference_luminance, 3)
+        "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
+         the reflecting area stays below); lamps may burn out.",
+        significant(exposure.white_luminance, 3)
     );
     let palette = |r: &crate::solution::Radiosity| (0..r.len()).map(|i| Some(exposure.display(r.of(i)))).collect();
     let plate =
@@ -197,10 +198,13 @@ fn hex(colour: LinearRgb) -> String {
 }
 
 fn marks(record: &Record, visibility: &Visibility) -> Vec<Mark> {
-    let worst: Vec<usize> = record.comparison.worst.iter().map(|w| w.patch).collect();
-    let places = visibility.middles(&worst);
+    let level = Level::of(record);
+    let numbers: Vec<usize> = record.comparison.worst.iter().map(|w| w.patch).collect();
+    // A number that belongs to no patch is in nobody's sight.
+    let patches: Vec<usize> = numbers.iter().map(|n| level.patch(record, *n).unwrap_or(usize::MAX)).collect();
+    let places = visibility.middles(&patches);
     let mark =
-        |(k, place): (usize, &Option<(f64, f64)>)| place.map(|(x, y)| Mark { rank: k + 1, patch: worst[k], x, y });
+        |(k, place): (usize, &Option<(f64, f64)>)| place.map(|(x, y)| Mark { rank: k + 1, number: numbers[k], x, y });
     places.iter().enumerate().filter_map(mark).collect()
 }
 

@@ -57,7 +57,7 @@ pub(super) fn round_number(x: f64) -> String {
     if (1e-4..1e7).contains(&cleaned.abs()) { cleaned.to_string() } else { format!("{cleaned:e}") }
 }
 
-/// A limit or a confidence, as typed: 0.05 is `5 %`.
+/// A limit, as typed: 0.05 is `5 %`.
 pub(super) fn percent_exact(x: f64) -> String {
     format!("{} %", round_number(100.0 * x))
 }
@@ -67,8 +67,22 @@ pub(super) fn percent(x: f64) -> String {
     format!("{} %", significant(100.0 * x, 3))
 }
 
+/// A confidence: at most two places.
+pub(super) fn confidence(x: f64) -> String {
+    let text = format!("{:.2}", 100.0 * x);
+    format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// False for an interval without end: a metric that could not be had.
+pub(super) fn is_known(e: &Estimate) -> bool {
+    [e.value, e.low, e.high].iter().all(|x| x.abs() < 1e300)
+}
+
 /// A fraction with its interval, as percentages; `sign` shows a plus.
 pub(super) fn percent_estimate(e: &Estimate, sign: bool) -> Shown {
+    if !is_known(e) {
+        return Shown { value: "unknown".into(), interval: None };
+    }
     let half_width = 50.0 * (e.high - e.low);
     let plain = |places: usize| move |x: f64| format!("{x:.places$}");
     let show: Box<dyn Fn(f64) -> String> = match decimals(half_width) {
@@ -121,6 +135,9 @@ mod tests {
         let s = percent_estimate(&Estimate::exact(0.05), false);
         assert_eq!((s.value.as_str(), s.interval), ("5.00 %", None));
         assert_eq!(percent_estimate(&estimate(0.0, 0.0, 3e-11), false).interval.as_deref(), Some("0 to 3.00e-9 %"));
+        let endless = Estimate { value: 0.0, std_err: None, low: 0.0, high: f64::MAX };
+        assert_eq!(percent_estimate(&endless, false), Shown { value: "unknown".into(), interval: None });
+        assert_eq!([0.95, 0.975, 0.99999, 1.0 - 0.05 / 3.0].map(confidence), ["95 %", "97.5 %", "100 %", "98.33 %"]);
         assert_eq!(percent(0.987), "98.7 %");
         assert_eq!(percent_exact(0.05), "5 %");
         assert_eq!(percent_exact(0.07), "7 %");

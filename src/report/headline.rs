@@ -1,6 +1,7 @@
 //! The verdict in one sentence, and what the reader has to be warned of.
 
-use super::format::{percent, percent_estimate, percent_exact};
+use super::asked::{Level, is_reflected};
+use super::format::{confidence, is_known, percent, percent_estimate, percent_exact};
 use crate::metrics::{LimitOutcome, Verdict};
 use crate::stats::Estimate;
 use crate::study::Record;
@@ -22,10 +23,11 @@ const EMITTERS_DOMINATE: f64 = 0.5;
 /// The verdict of a record in one sentence.
 pub fn headline(record: &Record) -> Headline {
     let name = &record.solution_name;
-    let confidence = percent_exact(record.comparison.confidence);
+    let confidence = confidence(record.comparison.confidence);
     let Some(decision) = &record.decision else {
         let what = differs(&record.comparison.rms, &confidence);
-        let sentence = format!("{name} differs from the reference by {what}; no limit was given.");
+        let light = if is_reflected(record) { "reflected luminance" } else { "luminance" };
+        let sentence = format!("{name} differs from the reference by {what} in {light}; no limit was given.");
         return Headline { verdict: None, word: "COMPARED", sentence };
     };
     let verb = match decision.verdict {
@@ -35,7 +37,7 @@ pub fn headline(record: &Record) -> Headline {
     };
     // A verdict rests on the limits that share it.
     let deciding = decision.limits.iter().filter(|l| l.verdict == decision.verdict);
-    let reasons: Vec<String> = deciding.map(|l| limit_reason(l, &confidence)).collect();
+    let reasons: Vec<String> = deciding.map(|l| limit_reason(record, l)).collect();
     let sentence = format!("{name} {verb}: {}.", reasons.join("; "));
     Headline { verdict: Some(decision.verdict), word: verdict_word(decision.verdict), sentence }
 }
@@ -50,23 +52,27 @@ pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
 }
 
 /// What became of one limit, as a clause.
-pub(super) fn limit_reason(outcome: &LimitOutcome, confidence: &str) -> String {
-    let what = differs(&outcome.estimate, confidence);
-    let (where_, limit) = (limit_subject(&outcome.metric), percent_exact(outcome.limit));
+pub(super) fn limit_reason(record: &Record, outcome: &LimitOutcome) -> String {
+    let (subject, limit) = (limit_subject(record, &outcome.metric), percent_exact(outcome.limit));
+    if !is_known(&outcome.estimate) {
+        return format!("{subject} is not known, so the limit of {limit} stays open");
+    }
+    let what = differs(&outcome.estimate, &confidence(record.comparison.confidence));
     match outcome.verdict {
-        Verdict::Pass => format!("{where_} is {what}, within the limit of {limit}"),
-        Verdict::Fail => format!("{where_} is {what}, beyond the limit of {limit}"),
+        Verdict::Pass => format!("{subject} is {what}, within the limit of {limit}"),
+        Verdict::Fail => format!("{subject} is {what}, beyond the limit of {limit}"),
         Verdict::Inconclusive => {
-            format!("{where_} is {what}, too close to the limit of {limit} to tell{}", more_rays(outcome.rays_factor))
+            format!("{subject} is {what}, too close to the limit of {limit} to tell{}", more_rays(outcome.rays_factor))
         }
     }
 }
 
 /// What a limit is on, as the subject of a clause.
-pub(super) fn limit_subject(metric: &str) -> String {
+fn limit_subject(record: &Record, metric: &str) -> String {
+    let error = if is_reflected(record) { "its error of reflected luminance" } else { "its luminance error" };
     match metric {
-        "rms" => "its luminance error".into(),
-        "top1" => "its error on the 1 % of patches that change most".into(),
+        "rms" => error.into(),
+        "top1" => format!("{error} on the 1 % of {} that change most", Level::of(record).nouns()),
         other => format!("its {other}"),
     }
 }
@@ -96,7 +102,7 @@ fn differs(e: &Estimate, confidence: &str) -> String {
 pub fn warnings(record: &Record) -> Vec<(String, String)> {
     let mut all = Vec::new();
     let c = &record.comparison;
-    if c.emitter_share > EMITTERS_DOMINATE {
+    if c.emitter_share > EMITTERS_DOMINATE && !is_reflected(record) {
         let reflected = c.rms_reflected.as_ref().map_or_else(
             || "nothing is reflected in this scene".into(),
             |e| format!("on reflected light alone it is {}", percent_estimate(e, false).value),
@@ -126,7 +132,7 @@ pub fn warnings(record: &Record) -> Vec<(String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::testing::{record, with_verdict};
+    use crate::report::testing::{record, set, with_verdict};
 
     #[test]
     fn each_verdict_says_why_in_one_sentence() {
@@ -152,6 +158,27 @@ mod tests {
         r.decision.as_mut().expect("decided").limits.push(kept);
         let sentence = headline(&r).sentence;
         assert!(!sentence.contains("change most"), "{sentence}");
+    }
+
+    #[test]
+    fn a_limit_that_nothing_is_known_of_stays_open() {
+        let mut r = with_verdict(Verdict::Inconclusive);
+        let limit = &mut r.decision.as_mut().expect("decided").limits[0];
+        limit.estimate = Estimate { value: 0.0, std_err: None, low: 0.0, high: f64::MAX };
+        let sentence = headline(&r).sentence;
+        assert_eq!(
+            sentence,
+            "point-lamps is not decided: its luminance error is not known, so the limit of 1.35 % stays open."
+        );
+    }
+
+    #[test]
+    fn what_is_judged_without_emission_says_so() {
+        let mut r = with_verdict(Verdict::Pass);
+        set(&mut r, "--reflected", "true");
+        r.comparison.emitter_share = 0.987;
+        assert!(headline(&r).sentence.contains("its error of reflected luminance is"));
+        assert!(warnings(&r).is_empty());
     }
 
     #[test]

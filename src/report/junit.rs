@@ -1,8 +1,10 @@
 //! JUnit: one test case for each limit.
 
+use super::asked::Level;
 use super::format::{percent_exact, printable};
 use super::headline::{headline, limit_reason};
-use super::{Artifact, Exporter, Extras, ReportError, worst_lines};
+use super::lines::{worst_lines, worst_title};
+use super::{Artifact, Exporter, Extras, ReportError};
 use crate::metrics::{LimitOutcome, Verdict};
 use crate::study::Record;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -27,7 +29,7 @@ impl Exporter for JUnit {
 
 fn case(record: &Record, limit: &LimitOutcome) -> TestCase {
     let name = format!("{} within {}", limit.metric, percent_exact(limit.limit));
-    let reason = limit_reason(limit, &percent_exact(record.comparison.confidence));
+    let reason = limit_reason(record, limit);
     let mut status = match limit.verdict {
         Verdict::Pass => TestCaseStatus::success(),
         Verdict::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
@@ -50,11 +52,12 @@ fn case(record: &Record, limit: &LimitOutcome) -> TestCase {
 
 /// What helps to find the cause: the sentence, the worst patches, the command.
 fn details(record: &Record) -> String {
-    let mut lines = vec![headline(record).sentence, String::new(), "Worst patches (luminance, W/m^2):".into()];
+    let mut lines = vec![headline(record).sentence, String::new(), worst_title(record)];
+    let noun = Level::of(record).noun();
     lines.extend(worst_lines(record).iter().map(|w| {
         format!(
-            "  patch {} ({}): reference {}, solution {}, difference {}",
-            w.patch, w.surface, w.reference, w.solution, w.difference
+            "  {noun} {} ({}): reference {}, solution {}, difference {}",
+            w.number, w.surface, w.reference, w.solution, w.difference
         )
     }));
     lines.extend([String::new(), format!("Replay: {}", record.replay)]);

@@ -1,7 +1,8 @@
 //! The two tables every report shows, built once: metrics, and the worst patches.
 
-use super::format::{column, percent, percent_estimate, percent_exact, significant};
-use crate::metrics::{Verdict, WorstPatch};
+use super::asked::{Level, is_reflected};
+use super::format::{column, is_known, percent, percent_estimate, percent_exact, significant};
+use crate::metrics::{LimitOutcome, Verdict, WorstPatch};
 use crate::render::luminance_std_err;
 use crate::stats::Estimate;
 use crate::study::Record;
@@ -32,8 +33,8 @@ pub struct MetricLine {
 /// One of the worst patches as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorstLine {
-    /// Patch number.
-    pub patch: usize,
+    /// Number of the patch, or of the element where elements are judged.
+    pub number: usize,
     /// Name of its surface.
     pub surface: String,
     /// Luminance of the reference.
@@ -61,10 +62,19 @@ const SHARE: &str = "Share of patches that emit in what the error is measured ag
 /// All metrics of a record, in order of display.
 pub fn metric_lines(record: &Record) -> Vec<MetricLine> {
     let c = &record.comparison;
-    let mut lines = vec![judged(record, "rms", "Luminance error", RMS, &c.rms)];
     let of = |key: &str, name: &str, meaning, e: &Estimate| judged(record, key, name, meaning, e);
-    lines.extend(c.top1.iter().map(|e| of("top1", "Error where most changes", TOP1, e)));
-    lines.extend(c.rms_reflected.iter().map(|e| of("rms_reflected", "Error of reflected light", REFLECTED, e)));
+    let mut lines = Vec::new();
+    if is_reflected(record) {
+        lines.push(of("rms", "Error of reflected light", REFLECTED, &c.rms));
+    } else {
+        lines.push(of("rms", "Luminance error", RMS, &c.rms));
+    }
+    // A limit on what could not be had still has a line.
+    let top1 = c.top1.as_ref().or(outcome(record, "top1").map(|o| &o.estimate));
+    lines.extend(top1.map(|e| of("top1", "Error where most changes", TOP1, e)));
+    if !is_reflected(record) {
+        lines.extend(c.rms_reflected.iter().map(|e| of("rms_reflected", "Error of reflected light", REFLECTED, e)));
+    }
     lines.push(of("bias", "Bias", BIAS, &c.bias));
     if c.per_band.len() > 1 {
         let band = |(name, e): &(String, Option<Estimate>)| {
@@ -79,8 +89,12 @@ pub fn metric_lines(record: &Record) -> Vec<MetricLine> {
     lines
 }
 
+fn outcome<'a>(record: &'a Record, metric: &str) -> Option<&'a LimitOutcome> {
+    record.decision.iter().flat_map(|d| &d.limits).find(|l| l.metric == metric)
+}
+
 fn judged(record: &Record, key: &str, name: &str, meaning: &'static str, e: &Estimate) -> MetricLine {
-    let outcome = record.decision.iter().flat_map(|d| &d.limits).find(|l| l.metric == key);
+    let outcome = outcome(record, key);
     let e = outcome.map_or(e, |o| &o.estimate);
     let shown = percent_estimate(e, key == "bias");
     MetricLine {
@@ -91,7 +105,7 @@ fn judged(record: &Record, key: &str, name: &str, meaning: &'static str, e: &Est
         interval: shown.interval,
         limit: outcome.map(|o| percent_exact(o.limit)),
         verdict: outcome.map(|o| o.verdict),
-        estimate: Some(*e),
+        estimate: is_known(e).then_some(*e),
         limit_value: outcome.map(|o| o.limit),
     }
 }
@@ -110,9 +124,19 @@ fn plain(key: &str, name: &str, meaning: &'static str, fraction: f64) -> MetricL
     }
 }
 
+/// Title of the table of the worst, with what its numbers are.
+pub(super) fn worst_title(record: &Record) -> String {
+    let light = if is_reflected(record) { "reflected luminance" } else { "luminance" };
+    format!("Worst {} ({light}, W/m\u{b2})", Level::of(record).nouns())
+}
+
 /// The worst patches of a record.
 pub fn worst_lines(record: &Record) -> Vec<WorstLine> {
-    let own = luminance_std_err(&record.stage.photometry, &record.solution).values;
+    // The record holds errors of patches; those of elements are not known.
+    let own = match Level::of(record) {
+        Level::Patch => luminance_std_err(&record.stage.photometry, &record.solution).values,
+        Level::Element => Vec::new(),
+    };
     let worst = &record.comparison.worst;
     let of = |get: fn(&WorstPatch) -> f64, sign| column(&worst.iter().map(get).collect::<Vec<_>>(), sign);
     let references = of(|w| w.reference, false);
@@ -121,7 +145,7 @@ pub fn worst_lines(record: &Record) -> Vec<WorstLine> {
     let line = |(k, w): (usize, &WorstPatch)| {
         let error = w.std_err.map(|e| e.hypot(own.get(w.patch).copied().flatten().unwrap_or(0.0)));
         WorstLine {
-            patch: w.patch,
+            number: w.patch,
             surface: w.surface.clone(),
             reference: references[k].clone(),
             solution: solutions[k].clone(),
@@ -144,7 +168,7 @@ fn with_sign(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::testing::{record, with_verdict};
+    use crate::report::testing::{record, set, with_verdict};
 
     #[test]
     fn a_limit_stands_in_the_line_of_its_metric_only() {
@@ -162,6 +186,26 @@ mod tests {
         r.comparison.per_band.truncate(1);
         let keys: Vec<String> = metric_lines(&r).into_iter().map(|l| l.key).collect();
         assert_eq!(keys, ["rms", "bias", "emitter_share"]);
+    }
+
+    #[test]
+    fn judged_without_emission_the_main_line_says_so_and_stands_alone() {
+        let mut r = record();
+        set(&mut r, "--reflected", "true");
+        let lines = metric_lines(&r);
+        assert_eq!((lines[0].key.as_str(), lines[0].name.as_str()), ("rms", "Error of reflected light"));
+        assert!(lines.iter().all(|l| l.key != "rms_reflected"));
+        assert_eq!(worst_title(&r), "Worst patches (reflected luminance, W/m\u{b2})");
+    }
+
+    #[test]
+    fn a_limit_on_what_is_not_known_has_its_line() {
+        let mut r = with_verdict(Verdict::Inconclusive);
+        let limit = &mut r.decision.as_mut().expect("decided").limits[0];
+        limit.metric = "top1".into();
+        limit.estimate = Estimate { value: 0.0, std_err: None, low: 0.0, high: f64::MAX };
+        let line = metric_lines(&r).into_iter().find(|l| l.key == "top1").expect("a line");
+        assert_eq!((line.value.as_str(), line.limit.as_deref(), line.estimate), ("unknown", Some("1.35 %"), None));
     }
 
     #[test]

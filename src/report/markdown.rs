@@ -1,8 +1,9 @@
 //! Markdown, for comments on changes and job summaries.
 
+use super::asked::Level;
 use super::format::printable;
 use super::headline::{headline, verdict_word, warnings};
-use super::lines::{MetricLine, WorstLine, metric_lines, worst_lines};
+use super::lines::{MetricLine, WorstLine, metric_lines, worst_lines, worst_title};
 use super::{Artifact, Exporter, Extras, ReportError};
 use crate::metrics::Verdict;
 use crate::study::Record;
@@ -32,7 +33,7 @@ fn markdown(record: &Record) -> String {
     push(&metrics(&metric_lines(record)));
     let worst = worst_lines(record);
     if !worst.is_empty() {
-        push(&folded("Worst patches (luminance, W/m\u{b2})", &worst_table(&worst)));
+        push(&folded(&worst_title(record), &worst_table(&worst, Level::of(record).noun())));
     }
     if !record.notices.is_empty() {
         let list: Vec<String> = record.notices.iter().map(|n| format!("- {}", escape(n))).collect();
@@ -67,9 +68,9 @@ fn key(text: &str) -> String {
     printable(text).replace(['`', '|'], "_")
 }
 
-fn worst_table(lines: &[WorstLine]) -> String {
+fn worst_table(lines: &[WorstLine], noun: &str) -> String {
     let mut rows = vec![
-        "| patch | surface | reference | solution | difference | relative | in standard errors |".to_string(),
+        format!("| {noun} | surface | reference | solution | difference | relative | in standard errors |"),
         "|---:|---|---:|---:|---:|---:|---:|".to_string(),
     ];
     rows.extend(lines.iter().map(|w| {
@@ -77,7 +78,7 @@ fn worst_table(lines: &[WorstLine]) -> String {
         let (surface, relative, errors) = (escape(&w.surface), cell(&w.relative), cell(&w.in_std_errs));
         format!(
             "| {} | {surface} | {} | {} | {} | {relative} | {errors} |",
-            w.patch, w.reference, w.solution, w.difference
+            w.number, w.reference, w.solution, w.difference
         )
     }));
     rows.join("\n")

@@ -4,6 +4,7 @@
 //! a sentence, [`metric_lines`] and [`worst_lines`] are the tables.
 
 mod artifact;
+mod asked;
 mod figures;
 mod format;
 mod headline;

@@ -71,3 +71,9 @@ pub(crate) fn with_verdict(verdict: Verdict) -> Record {
     r.decision = Some(Decision { verdict, limits: vec![outcome] });
     r
 }
+
+/// Gives a setting another value.
+pub(crate) fn set(record: &mut Record, name: &str, value: &str) {
+    record.settings.retain(|s| s.name != name);
+    record.settings.push(Setting { name: name.into(), value: value.into(), is_default: false });
+}

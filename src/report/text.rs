@@ -1,8 +1,9 @@
 //! The summary a terminal shows.
 
+use super::asked::Level;
 use super::format::printable;
 use super::headline::{headline, verdict_word, warnings};
-use super::lines::{metric_lines, worst_lines};
+use super::lines::{metric_lines, worst_lines, worst_title};
 use super::{Artifact, Exporter, Extras, ReportError};
 use crate::metrics::Verdict;
 use crate::study::Record;
@@ -38,12 +39,13 @@ pub fn text_summary(record: &Record, colour: bool) -> String {
     }
     let worst = worst_lines(record);
     if !worst.is_empty() {
-        let columns = ["patch", "surface", "reference", "solution", "difference", "in std errs"].map(String::from);
+        let noun = Level::of(record).noun();
+        let columns = [noun, "surface", "reference", "solution", "difference", "in std errs"].map(String::from);
         let rows = worst.into_iter().map(|w| {
             let errors = w.in_std_errs.unwrap_or_default();
-            [w.patch.to_string(), printable(&w.surface), w.reference, w.solution, w.difference, errors]
+            [w.number.to_string(), printable(&w.surface), w.reference, w.solution, w.difference, errors]
         });
-        out += &format!("\n{}\n", paint("worst patches (luminance, W/m2)", DIM, colour));
+        out += &format!("\n{}\n", paint(&worst_title(record), DIM, colour));
         let all: Vec<_> = std::iter::once(columns).chain(rows).collect();
         out += &table(&all, [true, false, true, true, true, true]);
     }

@@ -2,8 +2,10 @@
 
 use super::bars::{Bar, axis_end, bar};
 use crate::metrics::Verdict;
+use crate::report::asked::Level;
 use crate::report::figures::{Figure, ViewFigures};
-use crate::report::format::{count, percent_exact, round_number, significant};
+use crate::report::format::{confidence, count, round_number, significant};
+use crate::report::lines::worst_title;
 use crate::report::{ColourBar, Mark, MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
 use crate::study::Record;
 use serde::Serialize;
@@ -19,7 +21,7 @@ pub(super) struct Page {
     pub warnings: Vec<Pair>,
     pub metrics: Metrics,
     pub views: Vec<ViewBlock>,
-    pub worst: Vec<WorstRow>,
+    pub worst: Worst,
     pub settings: Vec<SettingRow>,
     pub provenance: Vec<Pair>,
     pub notices: Vec<String>,
@@ -98,7 +100,7 @@ pub(super) struct BarBlock {
 #[derive(Debug, Serialize)]
 pub(super) struct MarkBlock {
     pub rank: usize,
-    pub patch: usize,
+    pub number: usize,
     pub x: String,
     pub y: String,
     pub radius: String,
@@ -108,16 +110,25 @@ pub(super) struct MarkBlock {
 }
 
 #[derive(Debug, Serialize)]
+pub(super) struct Worst {
+    pub title: String,
+    pub noun: &'static str,
+    pub rows: Vec<WorstRow>,
+    /// True if some of them are out of sight of every camera.
+    pub any_hidden: bool,
+}
+
+#[derive(Debug, Serialize)]
 pub(super) struct WorstRow {
     pub rank: usize,
-    pub patch: usize,
+    pub number: usize,
     pub surface: String,
     pub reference: String,
     pub solution: String,
     pub difference: String,
     pub relative: Option<String>,
     pub in_std_errs: Option<String>,
-    pub in_sight: bool,
+    pub hidden: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -174,13 +185,14 @@ fn facts(record: &Record) -> Vec<Pair> {
     let truth = match record.truth.as_str() {
         "patch-system" => "exact solution of the patch system".to_string(),
         "continuous" => "true mean radiosity of each patch".to_string(),
+        "solution" => "another solution, taken as it is".to_string(),
         other => other.to_string(),
     };
     vec![
-        pair("Patches", count(c.patches)),
+        pair(if Level::of(record) == Level::Patch { "Patches" } else { "Elements" }, count(c.patches)),
         pair("Bands", record.stage.photometry.bands.join(", ")),
         pair("Judged against", truth),
-        pair("Confidence", minus(&percent_exact(c.confidence))),
+        pair("Confidence", minus(&confidence(c.confidence))),
     ]
 }
 
@@ -188,7 +200,7 @@ fn metrics(record: &Record) -> Metrics {
     let lines = metric_lines(record);
     let end = axis_end(&lines);
     Metrics {
-        confidence: minus(&percent_exact(record.comparison.confidence)),
+        confidence: minus(&confidence(record.comparison.confidence)),
         axis_end: end.map(|e| minus(&format!("{} %", significant(100.0 * e, 2)))),
         rows: lines.into_iter().map(|l| metric_row(l, end)).collect(),
     }
@@ -248,7 +260,7 @@ fn mark_blocks(view: &ViewFigures, width: u32) -> Vec<MarkBlock> {
         }
         MarkBlock {
             rank: m.rank,
-            patch: m.patch,
+            number: m.number,
             x: format!("{:.1}", m.x),
             y: format!("{:.1}", m.y),
             radius: format!("{:.1}", if free { radius } else { 0.35 * radius }),
@@ -269,12 +281,12 @@ fn bar_block(bar: &ColourBar) -> BarBlock {
     }
 }
 
-fn worst(record: &Record, views: &[ViewFigures]) -> Vec<WorstRow> {
-    let in_sight = |patch| views.iter().any(|v| v.marks.iter().any(|m| m.patch == patch));
+fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
+    let in_sight = |number| views.iter().any(|v| v.marks.iter().any(|m| m.number == number));
     let row = |(k, w): (usize, crate::report::WorstLine)| WorstRow {
         rank: k + 1,
-        in_sight: in_sight(w.patch),
-        patch: w.patch,
+        hidden: !views.is_empty() && !in_sight(w.number),
+        number: w.number,
         surface: w.surface,
         reference: minus(&w.reference),
         solution: minus(&w.solution),
@@ -282,7 +294,9 @@ fn worst(record: &Record, views: &[ViewFigures]) -> Vec<WorstRow> {
         relative: w.relative.map(|r| minus(&r)),
         in_std_errs: w.in_std_errs.map(|e| minus(&e)),
     };
-    worst_lines(record).into_iter().enumerate().map(row).collect()
+    let rows: Vec<WorstRow> = worst_lines(record).into_iter().enumerate().map(row).collect();
+    let (title, noun) = (worst_title(record), Level::of(record).noun());
+    Worst { title, noun, any_hidden: rows.iter().any(|r| r.hidden), rows }
 }
 
 fn setting(s: &crate::study::Setting) -> SettingRow {

@@ -25,7 +25,7 @@ fn the_pages_data() {
         ".program" => "[program]",
         ".views[].figures[].bar.stops" => "[colours]",
         ".views[].figures[].marks" => "[marks]",
-        ".worst[1:]" => "[more]",
+        ".worst.rows[1:]" => "[more]",
     });
 }
 
