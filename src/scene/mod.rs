@@ -7,6 +7,7 @@ mod build;
 mod contact;
 mod divide;
 mod error;
+mod fit;
 mod hash;
 mod model;
 mod numbering;
