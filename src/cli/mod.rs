@@ -1,1 +1,4 @@
-//! (to come)
+//! The commands of the program.
+
+pub mod doctor;
+pub mod setup;
