@@ -63,6 +63,14 @@ pub fn find_embree() -> Search {
     search
 }
 
+/// Loads one library and puts it into use for the whole process.
+///
+/// # Errors
+/// [`KernelError::Unusable`] with the reason.
+pub fn use_embree(path: &Path) -> Result<&'static Library, KernelError> {
+    load(path).map_err(|e| KernelError::Unusable { path: path.to_owned(), why: e.to_string() })
+}
+
 /// A name that the system's loader does not know is no library, hence no refusal.
 fn refusal(candidate: &Candidate, error: &LoadError) -> Option<Refused> {
     let absent = is_bare(&candidate.path) && matches!(error, LoadError::NotLoadable { .. });
@@ -76,7 +84,7 @@ impl Search {
     /// [`KernelError::Unusable`] for the first library that was refused, else [`KernelError::NotFound`].
     pub fn result(self) -> Result<&'static Library, KernelError> {
         let first = self.refused.into_iter().next();
-        self.library.ok_or_else(|| match first {
+        self.library.ok_or(match first {
             Some(Refused { path, why }) => KernelError::Unusable { path, why },
             None => KernelError::NotFound { looked_in: self.looked_in },
         })

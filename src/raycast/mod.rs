@@ -6,6 +6,8 @@
 mod builtin;
 mod coplanar;
 mod embree;
+#[cfg(feature = "embree4-rs")]
+mod embree4_rs;
 mod find;
 mod hierarchy;
 mod kernel;
@@ -14,12 +16,14 @@ mod tracer;
 mod polygons;
 mod select;
 pub mod specimen;
+mod witness;
 
 pub use builtin::BuiltinKernel;
 pub use coplanar::plane_groups;
-pub use embree::EmbreeKernel;
-pub use find::{Candidate, EMBREE_VARIABLE, Refused, Search, embree_folder, find_embree};
+pub use embree::{EmbreeKernel, Packets};
+pub use find::{Candidate, EMBREE_VARIABLE, Refused, Search, embree_folder, find_embree, use_embree};
 pub use kernel::{KernelError, KernelInfo, KernelKind, RayBatch, RayKernel};
 pub use locate::{BACK, ESCAPED};
 pub use tracer::{Tally, TraceScratch, Tracer};
 pub use select::{Kernels, open_kernel, open_kernels};
+pub use witness::{Agreement, Disagreement, agree};

@@ -230,8 +230,8 @@ impl Polygons {
         // An origin in the plane itself, to rounding: meeting it is a matter of direction, and only its front
         // can be met. Otherwise a wall would be hit from behind by rays that start at its foot.
         let on_it = before.abs() <= self.rim;
-        let t = if on_it { 0.0 } else { -before / approach };
-        let reached = if on_it { approach < 0.0 } else { t >= 0.0 && approach != 0.0 };
+        let t = -before / approach;
+        let (reached, t) = if on_it { (approach < 0.0, t.max(0.0)) } else { (t >= 0.0 && approach != 0.0, t) };
         let slack = self.rim * (1.0 + 1e-3 / approach.abs().max(1e-6));
         if !reached || t > nearest.distance + slack {
             return false;

@@ -46,14 +46,26 @@ pub fn open_kernels(kind: KernelKind, stage: &Stage) -> Result<Kernels, KernelEr
         KernelKind::Builtin => Ok(alone(None)),
         KernelKind::Auto => Ok(embree(stage, &exact).unwrap_or_else(|e| alone(Some(without_embree(&e))))),
         KernelKind::Embree => embree(stage, &exact),
-        KernelKind::Embree4Rs => Err(KernelError::NotBuilt { name: "embree4-rs" }),
+        KernelKind::Embree4Rs => wrapper(stage, &exact),
     }
 }
 
 fn embree(stage: &Stage, exact: &Arc<BuiltinKernel>) -> Result<Kernels, KernelError> {
     let library = find_embree().result()?;
-    let kernel = EmbreeKernel::new(library.path(), stage, exact.clone())?;
+    let kernel = EmbreeKernel::new(library, stage, exact.clone())?;
     Ok(Kernels { kernel: Arc::new(kernel), exact: exact.clone(), notice: None })
+}
+
+#[cfg(feature = "embree4-rs")]
+fn wrapper(stage: &Stage, exact: &Arc<BuiltinKernel>) -> Result<Kernels, KernelError> {
+    let library = find_embree().result()?;
+    let kernel = EmbreeKernel::through_wrapper(library, stage, exact.clone())?;
+    Ok(Kernels { kernel: Arc::new(kernel), exact: exact.clone(), notice: None })
+}
+
+#[cfg(not(feature = "embree4-rs"))]
+fn wrapper(_: &Stage, _: &Arc<BuiltinKernel>) -> Result<Kernels, KernelError> {
+    Err(KernelError::NotBuilt { name: "embree4-rs" })
 }
 
 /// What is lost, and how to mend it.

@@ -47,7 +47,7 @@ fn evidence(session: &Session, seed: u64) -> Evidence {
     Evidence {
         witness: Some(second.info().name.clone()),
         retraced: agreement.rays,
-        near_edge: agreement.near_edge,
+        near_edge: (agreement.near_edge * agreement.rays as f64).round() as u64,
         disagreements: agreement.disagreements,
         declared_enclosure,
     }

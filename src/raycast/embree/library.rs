@@ -2,6 +2,7 @@
 
 #![allow(unsafe_code)]
 
+use super::{Mesh, TracePacket};
 use crate::raycast::{KernelError, KernelInfo};
 use embree4_sys::*;
 use std::path::{Path, PathBuf};
@@ -88,7 +89,7 @@ fn failed(device: RTCDevice, doing: &'static str) -> KernelError {
 }
 
 /// A committed scene of triangles; keeps its device alive.
-pub(super) struct Scene {
+pub struct Scene {
     handle: RTCScene,
     device: Device,
 }
@@ -99,8 +100,8 @@ unsafe impl Send for Scene {}
 unsafe impl Sync for Scene {}
 
 impl Scene {
-    /// Builds the hierarchy over triangles given by corners and their numbers.
-    pub(super) fn new(device: Device, corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Result<Self, KernelError> {
+    /// Builds the hierarchy over the triangles of a mesh.
+    pub(super) fn new(device: Device, mesh: &Mesh) -> Result<Self, KernelError> {
         // SAFETY: a live device.
         let scene = Self { handle: unsafe { rtcNewScene(device.0) }, device };
         if scene.handle.is_null() {
@@ -108,11 +109,11 @@ impl Scene {
         }
         // SAFETY: a live scene.
         unsafe {
-            rtcSetSceneFlags(scene.handle, RTCSceneFlags::ROBUST);
-            rtcSetSceneBuildQuality(scene.handle, RTCBuildQuality::HIGH);
+            rtcSetSceneFlags(scene.handle, RTCSceneFlags(std::env::var("F").map_or(4, |q| q.parse().unwrap())));
+            rtcSetSceneBuildQuality(scene.handle, RTCBuildQuality(std::env::var("Q").map_or(2, |q| q.parse().unwrap())));
         }
-        if !triangles.is_empty() {
-            scene.attach(corners, triangles)?;
+        if !mesh.triangles.is_empty() {
+            scene.attach(mesh)?;
         }
         // SAFETY: a live scene.
         unsafe { rtcCommitScene(scene.handle) };
@@ -120,14 +121,14 @@ impl Scene {
         Ok(scene)
     }
 
-    fn attach(&self, corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Result<(), KernelError> {
+    fn attach(&self, mesh: &Mesh) -> Result<(), KernelError> {
         // SAFETY: a live device.
         let geometry = unsafe { rtcNewGeometry(self.device.0, RTCGeometryType::TRIANGLE) };
         if geometry.is_null() {
             return Err(failed(self.device.0, "making a triangle mesh"));
         }
-        let filled = fill(geometry, RTCBufferType::VERTEX, RTCFormat::FLOAT3, corners)
-            && fill(geometry, RTCBufferType::INDEX, RTCFormat::UINT3, triangles);
+        let filled = fill(geometry, RTCBufferType::VERTEX, RTCFormat::FLOAT3, &mesh.corners)
+            && fill(geometry, RTCBufferType::INDEX, RTCFormat::UINT3, &mesh.triangles);
         // SAFETY: live handles; the scene takes its own reference before ours is given back.
         unsafe {
             if filled {
@@ -138,10 +139,14 @@ impl Scene {
         }
         self.device.check("copying the triangles")
     }
+}
 
-    /// Traces the rays of a packet that are marked valid.
+impl TracePacket for Scene {
     #[inline]
-    pub(super) fn intersect(&self, packet: &mut RTCRayHit8, valid: &Valid8) {
+    fn trace(&self, packet: &mut RTCRayHit8, valid: &Valid8) {
+        if *ONE { for k in 0..8 { let r=&packet.ray; let mut h = RTCRayHit { ray: RTCRay{org_x:r.org_x[k],org_y:r.org_y[k],org_z:r.org_z[k],dir_x:r.dir_x[k],dir_y:r.dir_y[k],dir_z:r.dir_z[k],..Default::default()}, hit: Default::default()};
+           unsafe { rtcIntersect1(self.handle, &mut h, null_mut()) }; packet.hit.geomID[k]=h.hit.geomID; packet.hit.primID[k]=h.hit.primID; packet.ray.tfar[k]=h.ray.tfar; } return; }
+        if *COH { let mut a = RTCIntersectArguments{flags: RTCRayQueryFlags::COHERENT, ..Default::default()}; unsafe { rtcIntersect8(valid, self.handle, packet, &mut a) }; return; }
         // SAFETY: a committed scene; aligned structs with the room the probe has checked.
         unsafe { rtcIntersect8(valid, self.handle, packet, null_mut()) }
     }
@@ -179,3 +184,6 @@ fn where_mapped(path: &Path) -> PathBuf {
     let mut embree = files.filter(|f| f.file_name().is_some_and(|n| n.to_string_lossy().starts_with("libembree4")));
     embree.next().unwrap_or(path).to_owned()
 }
+
+static ONE: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| std::env::var("ONE").is_ok());
+static COH: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| std::env::var("COH").is_ok());

@@ -20,9 +20,8 @@ use super::builtin::BuiltinKernel;
 use super::{KernelError, KernelInfo, RayBatch, RayKernel};
 use crate::math::DVec3;
 use crate::scene::{NO_FACET, Stage};
-use embree4_sys::{RTC_INVALID_GEOMETRY_ID, RTCRayHit8, Valid8};
+use embree4_sys::{Library, RTC_INVALID_GEOMETRY_ID, RTCRay8, RTCRayHit8, Valid8};
 use near::{Checks, Surroundings};
-use std::path::Path;
 use std::sync::Arc;
 
 pub(super) use library::load;
@@ -40,10 +39,25 @@ const NEAR_HIT: f64 = 1e-5;
 /// Top bit of a facet number in the triangle table: hits on it are decided again.
 const DELICATE: u32 = 1 << 31;
 
-/// Embree 4 on a stage.
-pub struct EmbreeKernel {
+/// Traces packets of rays in single precision.
+pub trait TracePacket: Send + Sync {
+    /// Traces the rays of a packet that are marked valid. Triangles are numbered as they were handed over.
+    fn trace(&self, packet: &mut RTCRayHit8, valid: &Valid8);
+}
+
+/// A triangle mesh for single precision.
+pub(super) struct Mesh {
+    /// From the scene's centre.
+    pub(super) corners: Vec<[f32; 3]>,
+    /// Numbers of three corners each.
+    pub(super) triangles: Vec<[u32; 3]>,
+    facet_of: Vec<u32>,
+}
+
+/// Embree 4 on a stage; `T` is the way to reach it.
+pub struct EmbreeKernel<T = library::Scene> {
     info: KernelInfo,
-    scene: library::Scene,
+    scene: T,
     /// Facet of each triangle, with the mark of delicate ones.
     facet_of: Vec<u32>,
     surroundings: Surroundings,
@@ -51,32 +65,29 @@ pub struct EmbreeKernel {
 }
 
 impl EmbreeKernel {
-    /// Loads the library and prepares a stage. `exact` decides what is too fine for single precision; it must
-    /// have been made from the same stage.
+    /// Prepares a stage on a library that is in use. `exact` decides what is too fine for single precision; it
+    /// must have been made from the same stage.
     ///
     /// # Errors
-    /// [`KernelError::Unusable`] if the library is refused, [`KernelError::Failed`] if it reports an error.
-    pub fn new(library: &Path, stage: &Stage, exact: Arc<BuiltinKernel>) -> Result<Self, KernelError> {
-        let library =
-            load(library).map_err(|e| KernelError::Unusable { path: library.to_owned(), why: e.to_string() })?;
+    /// [`KernelError::Failed`] if the library reports an error.
+    pub fn new(library: &Library, stage: &Stage, exact: Arc<BuiltinKernel>) -> Result<Self, KernelError> {
         let device = library::Device::new()?;
         let info = device.info(library);
-        let (corners, triangles, mut facet_of) = triangulate(stage, exact.polygons().centre());
-        let reach = REACH * exact.polygons().diagonal();
-        let delicate = stacked::closely_stacked(stage, &exact, reach);
-        facet_of.iter_mut().filter(|f| delicate[**f as usize]).for_each(|f| *f |= DELICATE);
-        Ok(Self {
-            info,
-            scene: library::Scene::new(device, &corners, &triangles)?,
-            facet_of,
-            surroundings: Surroundings::new(stage, &exact, reach),
-            exact,
-        })
+        let mesh = Mesh::new(stage, &exact);
+        let scene = library::Scene::new(device, &mesh)?;
+        Ok(Self::around(scene, mesh, info, stage, exact))
     }
+}
 
-    /// The arbiter this kernel asks.
-    pub fn exact(&self) -> &Arc<BuiltinKernel> {
-        &self.exact
+impl<T: TracePacket> EmbreeKernel<T> {
+    /// The kernel around a scene that was made from `mesh`.
+    pub(super) fn around(scene: T, mesh: Mesh, info: KernelInfo, stage: &Stage, exact: Arc<BuiltinKernel>) -> Self {
+        let reach = REACH * exact.polygons().diagonal();
+        let stacked = stacked::closely_stacked(stage, &exact, reach);
+        let mut facet_of = mesh.facet_of;
+        facet_of.iter_mut().filter(|f| stacked[**f as usize]).for_each(|f| *f |= DELICATE);
+        let surroundings = Surroundings::new(stage, &exact, reach);
+        Self { info, scene, facet_of, surroundings, exact }
     }
 
     /// Reads what a packet met. Bits of `again` mark the rays to be decided again, also in the result.
@@ -98,7 +109,7 @@ impl EmbreeKernel {
     }
 }
 
-impl RayKernel for EmbreeKernel {
+impl<T: TracePacket> RayKernel for EmbreeKernel<T> {
     fn info(&self) -> &KernelInfo {
         &self.info
     }
@@ -109,7 +120,7 @@ impl RayKernel for EmbreeKernel {
     }
 }
 
-impl EmbreeKernel {
+impl<T: TracePacket> EmbreeKernel<T> {
     fn trace(&self, rays: &RayBatch, facets: &mut [u32]) {
         let polygons = self.exact.polygons();
         let diagonal = polygons.diagonal();
@@ -123,7 +134,7 @@ impl EmbreeKernel {
         for first in (0..rays.len()).step_by(8) {
             let count = (rays.len() - first).min(8);
             start.fill(rays, first, count, &mut packet);
-            self.scene.intersect(&mut packet, &FIRST[count]);
+            self.scene.trace(&mut packet, &FIRST[count]);
             let mut again = self.read(&packet, own, near_hit, &mut found);
             if !checks.is_empty() {
                 let r = &packet.ray;
@@ -137,6 +148,38 @@ impl EmbreeKernel {
                 facets[k] = self.exact.intersect_one(rays.origin_of(k), rays.direction_of(k), rays.from);
             }
         }
+    }
+}
+
+/// Rays made ready for Embree: what the benchmark compares the kernel with.
+#[derive(Debug, Clone)]
+pub struct Packets(Vec<RTCRay8>);
+
+impl EmbreeKernel {
+    /// Converts whole packets of rays; what is left over is dropped.
+    pub fn packets(&self, rays: &RayBatch) -> Packets {
+        let polygons = self.exact.polygons();
+        let step = polygons.normal_of(rays.from) * (STEP * polygons.diagonal());
+        let start = Start { centre: polygons.centre(), step };
+        let mut packet = RTCRayHit8::default();
+        let whole = (0..rays.len() / 8).map(|p| {
+            start.fill(rays, 8 * p, 8, &mut packet);
+            packet.ray
+        });
+        Packets(whole.collect())
+    }
+
+    /// Nothing but Embree: traces packets and counts the hits.
+    pub fn trace_raw(&self, packets: &Packets) -> usize {
+        let mut packet = RTCRayHit8::default();
+        let mut hits = 0;
+        for rays in &packets.0 {
+            packet.ray = *rays;
+            packet.hit.geomID = [RTC_INVALID_GEOMETRY_ID; 8];
+            self.scene.trace(&mut packet, &FIRST[8]);
+            hits += packet.hit.geomID.iter().filter(|g| **g != RTC_INVALID_GEOMETRY_ID).count();
+        }
+        hits
     }
 }
 
@@ -226,16 +269,19 @@ fn brought_near(rays: &RayBatch, exact: &BuiltinKernel) -> Option<RayBatch> {
     })
 }
 
-/// Corners of every facet from the centre, triangles of their fans, and the facet of each triangle.
-fn triangulate(stage: &Stage, centre: DVec3) -> (Vec<[f32; 3]>, Vec<[u32; 3]>, Vec<u32>) {
-    let (mut corners, mut triangles, mut facet_of) = (Vec::new(), Vec::new(), Vec::new());
-    for (facet, number) in stage.facets.iter().zip(0..) {
-        let first = corners.len() as u32;
-        corners.extend(facet.vertices.iter().map(|v| (*v - centre).as_vec3().to_array()));
-        for k in 1..facet.vertices.len() as u32 - 1 {
-            triangles.push([first, first + k, first + k + 1]);
-            facet_of.push(number);
+impl Mesh {
+    /// Every facet as a fan of triangles.
+    pub(super) fn new(stage: &Stage, exact: &BuiltinKernel) -> Self {
+        let centre = exact.polygons().centre();
+        let mut mesh = Self { corners: Vec::new(), triangles: Vec::new(), facet_of: Vec::new() };
+        for (facet, number) in stage.facets.iter().zip(0..) {
+            let first = mesh.corners.len() as u32;
+            mesh.corners.extend(facet.vertices.iter().map(|v| (*v - centre).as_vec3().to_array()));
+            for k in 1..facet.vertices.len() as u32 - 1 {
+                mesh.triangles.push([first, first + k, first + k + 1]);
+                mesh.facet_of.push(number);
+            }
         }
+        mesh
     }
-    (corners, triangles, facet_of)
 }
