@@ -39,10 +39,11 @@ fn the_three_verdicts_and_their_codes() {
     let place = workshop();
     let here = place.path();
     // The furnace has no noise: B = 2 everywhere.
-    let bright = std::fs::read_to_string(here.join("good.csv")).expect("written").lines().enumerate();
-    let bright: Vec<String> =
-        bright.map(|(k, line)| if k == 0 { "patch,y".into() } else { format!("{},2.1", line.split(',').next().expect("patch")) }).collect();
-    std::fs::write(here.join("bright.csv"), bright.join("\n")).expect("writable");
+    let good = std::fs::read_to_string(here.join("good.csv")).expect("written");
+    let patches = good.lines().skip(1).map(|line| line.split(',').next().expect("a patch"));
+    let rows: String = patches.map(|p| format!("{p},2.1\n")).collect();
+    let bright = format!("patch,y\n{rows}");
+    std::fs::write(here.join("bright.csv"), bright).expect("writable");
     assert_eq!(run(here, "check good.csv --reference ref --max-rms 1%").0, 0);
     let (code, out, _) = run(here, "check bright.csv --reference ref --max-rms 1%");
     assert_eq!(code, 1, "{out}");
@@ -69,7 +70,9 @@ fn same_bytes_on_any_number_of_threads() {
             .expect("a folder")
             .map(|e| e.expect("an entry").path())
             .filter(|p| p.file_name().is_some_and(|n| n != "timing.json"))
-            .map(|p| (p.file_name().expect("a name").to_string_lossy().to_string(), std::fs::read(&p).expect("readable")))
+            .map(|p| {
+                (p.file_name().expect("a name").to_string_lossy().to_string(), std::fs::read(&p).expect("readable"))
+            })
             .collect();
         list.sort();
         list
@@ -87,7 +90,15 @@ fn same_bytes_on_any_number_of_threads() {
     }
     assert_eq!(files("ref1"), files("ref2"));
     assert_eq!(files("page1"), files("page2"));
-    for pair in [("f1.npz", "f2.npz"), ("f1.csv", "f2.csv"), ("f1.mtx", "f2.mtx"), ("h1.csv", "h2.csv"), ("g1.csv", "g2.csv"), ("m1.md", "m2.md"), ("j1.xml", "j2.xml")] {
+    for pair in [
+        ("f1.npz", "f2.npz"),
+        ("f1.csv", "f2.csv"),
+        ("f1.mtx", "f2.mtx"),
+        ("h1.csv", "h2.csv"),
+        ("g1.csv", "g2.csv"),
+        ("m1.md", "m2.md"),
+        ("j1.xml", "j2.xml"),
+    ] {
         let read = |n: &str| std::fs::read(here.join(n)).expect("readable");
         assert!(read(pair.0) == read(pair.1), "{pair:?} differ");
     }
@@ -150,7 +161,9 @@ fn a_tampered_reference_is_refused() {
     for name in ["scene.json", "replicates.npz", "reference.csv", "reference.json"] {
         let path = here.join("ref").join(name);
         let sound = std::fs::read(&path).expect("readable");
-        for (how, bytes) in [("cut off", sound[..sound.len() / 2].to_vec()), ("changed", changed(&sound)), ("emptied", Vec::new())] {
+        for (how, bytes) in
+            [("cut off", sound[..sound.len() / 2].to_vec()), ("changed", changed(&sound)), ("emptied", Vec::new())]
+        {
             std::fs::write(&path, bytes).expect("writable");
             let (code, out, err) = run(here, "check good.csv --reference ref --max-rms 5%");
             assert_eq!(code, 2, "{name} {how}: {out}{err}");
@@ -161,7 +174,8 @@ fn a_tampered_reference_is_refused() {
         std::fs::write(&path, sound).expect("writable");
     }
     let manifest = here.join("ref/reference.json");
-    let text = std::fs::read_to_string(&manifest).expect("readable").replace("etalon-reference/1", "etalon-reference/2");
+    let text =
+        std::fs::read_to_string(&manifest).expect("readable").replace("etalon-reference/1", "etalon-reference/2");
     std::fs::write(&manifest, text).expect("writable");
     let (code, _, err) = run(here, "check good.csv --reference ref --max-rms 5%");
     assert!(code == 2 && err.contains("etalon-reference/2"), "{err}");
@@ -180,8 +194,12 @@ fn changed(bytes: &[u8]) -> Vec<u8> {
 fn a_leaking_enclosure_fails_its_self_check() {
     let place = tempfile::tempdir().expect("a folder");
     let here = place.path();
-    let wall = |name: &str, p: &str| format!("[[surface]]\nname = \"{name}\"\nmaterial = \"white\"\npolygon = {p}\npatches = [2, 2]\n");
-    let mut scene = String::from("format = \"etalon-scene/1\"\nname = \"leaky\"\nenclosure = true\n[photometry]\nprimaries = \"mono\"\nbands = [\"y\"]\n[[material]]\nname = \"white\"\nreflectance = 0.5\nemission = 1.0\n");
+    let wall = |name: &str, p: &str| {
+        format!("[[surface]]\nname = \"{name}\"\nmaterial = \"white\"\npolygon = {p}\npatches = [2, 2]\n")
+    };
+    let mut scene = String::from(
+        "format = \"etalon-scene/1\"\nname = \"leaky\"\nenclosure = true\n[photometry]\nprimaries = \"mono\"\nbands = [\"y\"]\n[[material]]\nname = \"white\"\nreflectance = 0.5\nemission = 1.0\n",
+    );
     for (name, p) in [
         ("floor", "[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]"),
         ("ceiling", "[[0,0,1],[0,1,1],[1,1,1],[1,0,1]]"),

@@ -277,8 +277,7 @@ fn exact_and_bright_solutions_read_as_they_are() {
     let truth = Truth::Sampled(reference(&stage, KernelKind::Builtin, 262_144, 8));
     let bands = ["y".to_string()];
     let emission = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let judged =
-        Judged { areas: &[1.0; 6], emission: &emission, surfaces: &["s"; 6], bands: &bands, weights: &[1.0] };
+    let judged = Judged { areas: &[1.0; 6], emission: &emission, surfaces: &["s"; 6], bands: &bands, weights: &[1.0] };
     let rms = |factor: f64| {
         let solution = Radiosity { bands: 1, values: exact.iter().map(|b| b * factor).collect(), std_err: None };
         compare(&solution, &truth, None, &judged, 0.999, false).expect("comparable").rms

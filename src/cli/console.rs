@@ -19,17 +19,7 @@ pub struct Console {
 impl Console {
     /// The console that the options ask for.
     pub fn new(global: &Global) -> Self {
-        Self {
-            json: global.json,
-            quiet: global.quiet,
-            verbose: global.verbose,
-            bar: Mutex::new(ProgressBar::hidden()),
-        }
-    }
-
-    /// True if results go out as JSON.
-    pub fn wants_json(&self) -> bool {
-        self.json
+        Self { json: global.json, quiet: global.quiet, verbose: global.verbose, bar: Mutex::new(ProgressBar::hidden()) }
     }
 
     /// Prints one JSON object on stdout.

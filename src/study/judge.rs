@@ -1,8 +1,8 @@
 //! Putting a solution before the judge: data for the metrics, the comparison, the decision.
 
 use crate::io::StoredReference;
-use crate::metrics::{Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, shared_confidence};
 use crate::math::DVec3;
+use crate::metrics::{Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, shared_confidence};
 use crate::scene::{Material, NO_FACET, Patch, Region, Stage, StageSurface};
 use crate::solution::Radiosity;
 use crate::view::Photometry;

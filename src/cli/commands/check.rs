@@ -156,7 +156,10 @@ fn check_truth(args: &CompareArgs, reference: &Input) -> Result<String, Failure>
     });
     if asked.is_some_and(|a| a != held) {
         let (asked, held) = (asked.unwrap_or(held).name(), held.name());
-        return Err(Failure::input(format!("--truth {asked}: the reference {} holds {held}", args.reference.display())));
+        return Err(Failure::input(format!(
+            "--truth {asked}: the reference {} holds {held}",
+            args.reference.display()
+        )));
     }
     Ok(held.name().into())
 }
@@ -223,9 +226,7 @@ fn fit(path: &Path, input: Input, to: &Receivers, per_element: bool, stage: &Sta
 fn before(path: &Path, receivers: &Receivers, judging: bool) -> Result<Against, Failure> {
     match Input::read(path)?.trusted(path, judging)? {
         Input::Reference(r) => Ok(Against::Reference(r)),
-        Input::Solution(s) => {
-            Ok(Against::Solution(s.fit_before(&receivers.photometry.bands, receivers.areas.len())?))
-        }
+        Input::Solution(s) => Ok(Against::Solution(s.fit_before(&receivers.photometry.bands, receivers.areas.len())?)),
     }
 }
 
@@ -299,10 +300,16 @@ fn settings(args: &CompareArgs, limits: Option<&Limits>) -> Vec<Setting> {
     let setting = |name: &str, value: String, is_default: bool| Setting { name: name.into(), value, is_default };
     let mut out = vec![
         setting("--confidence", args.confidence.0.to_string(), args.confidence.0 == 0.95),
-        setting("--per", if args.per == PerLevel::Element { "element" } else { "patch" }.into(), args.per == PerLevel::Patch),
+        setting(
+            "--per",
+            if args.per == PerLevel::Element { "element" } else { "patch" }.into(),
+            args.per == PerLevel::Patch,
+        ),
         setting("--reflected", args.reflected.to_string(), !args.reflected),
     ];
-    for (name, limit) in [("--max-rms", limits.and_then(|l| l.max_rms)), ("--max-top1", limits.and_then(|l| l.max_top1))] {
+    for (name, limit) in
+        [("--max-rms", limits.and_then(|l| l.max_rms)), ("--max-top1", limits.and_then(|l| l.max_top1))]
+    {
         out.extend(limit.map(|l| setting(name, l.to_string(), false)));
     }
     out

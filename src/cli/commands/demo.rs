@@ -74,7 +74,10 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
         page.display()
     );
     let verdict = verdict.unwrap_or(Verdict::Inconclusive);
-    console.result(&text, &json!({ "verdict": verdict, "report": page, "rms": record.comparison.rms, "seconds": seconds }));
+    console.result(
+        &text,
+        &json!({ "verdict": verdict, "report": page, "rms": record.comparison.rms, "seconds": seconds }),
+    );
     Ok(exit::DONE)
 }
 

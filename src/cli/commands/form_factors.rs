@@ -25,7 +25,8 @@ pub fn run(args: &FormFactorsArgs, kernel: KernelKind, console: &Console) -> Res
     crate::reference::check_size(&stage, &plan)?;
     let session = inputs::session(&stage, kernel, console)?;
     let emitters = patch_emitters(&stage);
-    let rays = plan.rays_per_randomisation() * u64::from(plan.randomisations) * emitters.iter().flatten().count() as u64;
+    let rays =
+        plan.rays_per_randomisation() * u64::from(plan.randomisations) * emitters.iter().flatten().count() as u64;
     console.begin("casting rays", plan.target_error.is_none().then_some(rays));
     let stream = Stream::new(Role::Judge, args.rays.seed);
     let casting =

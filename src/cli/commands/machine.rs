@@ -9,9 +9,8 @@ use serde_json::json;
 pub fn setup(command: &SetupCommand, console: &Console) -> Result<u8, Failure> {
     match command {
         SetupCommand::Embree => {
-            let report = setup::setup_embree().map_err(|e| {
-                Failure::input(format!("{e}; {}", setup::SetupError::consolation()))
-            })?;
+            let report = setup::setup_embree()
+                .map_err(|e| Failure::input(format!("{e}; {}", setup::SetupError::consolation())))?;
             console.result(&report.to_string(), &json!(report));
             Ok(exit::DONE)
         }

@@ -32,7 +32,9 @@ pub fn run(folder: &Path, kernel: KernelKind, console: &Console) -> Result<u8, F
     let run: Run<Record> = serde_json::from_slice(&bytes)
         .map_err(|e| FileError::new(&path, format!("is not a finished run: {e}")).at(format!("line {}", e.line())))?;
     if run.format != FORMAT {
-        return Err(FileError::new(&path, format!("has format {}", run.format)).mend(format!("this version reads {FORMAT}")).into());
+        return Err(FileError::new(&path, format!("has format {}", run.format))
+            .mend(format!("this version reads {FORMAT}"))
+            .into());
     }
     let page = write_report(folder, &run.record, kernel, console)?;
     console.result(&page.display().to_string(), &json!({ "report": page }));

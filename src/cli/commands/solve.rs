@@ -26,8 +26,7 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
     console.end();
     let receivers = if per_element { Receivers::elements(&stage) } else { Receivers::patches(&stage) };
     let (hash, present) = (stage.hash(), receivers.present());
-    let names =
-        BandNames { scene: &stage.name, scene_hash: &hash, bands: &stage.photometry.bands, present: &present };
+    let names = BandNames { scene: &stage.name, scene_hash: &hash, bands: &stage.photometry.bands, present: &present };
     inputs::write(&args.output, &write_solution(&outcome.radiosity, names, format))?;
     if let (Some(path), Some(format)) = (&args.save_form_factors, matrix_format) {
         inputs::write(path, &write_form_factors(&outcome.form_factors, format, false))?;

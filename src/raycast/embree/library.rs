@@ -109,8 +109,8 @@ impl Scene {
         }
         // SAFETY: a live scene.
         unsafe {
-            rtcSetSceneFlags(scene.handle, RTCSceneFlags(std::env::var("F").map_or(4, |q| q.parse().unwrap())));
-            rtcSetSceneBuildQuality(scene.handle, RTCBuildQuality(std::env::var("Q").map_or(2, |q| q.parse().unwrap())));
+            rtcSetSceneFlags(scene.handle, RTCSceneFlags::ROBUST);
+            rtcSetSceneBuildQuality(scene.handle, RTCBuildQuality::HIGH);
         }
         if !mesh.triangles.is_empty() {
             scene.attach(mesh)?;
@@ -144,9 +144,6 @@ impl Scene {
 impl TracePacket for Scene {
     #[inline]
     fn trace(&self, packet: &mut RTCRayHit8, valid: &Valid8) {
-        if *ONE { for k in 0..8 { let r=&packet.ray; let mut h = RTCRayHit { ray: RTCRay{org_x:r.org_x[k],org_y:r.org_y[k],org_z:r.org_z[k],dir_x:r.dir_x[k],dir_y:r.dir_y[k],dir_z:r.dir_z[k],..Default::default()}, hit: Default::default()};
-           unsafe { rtcIntersect1(self.handle, &mut h, null_mut()) }; packet.hit.geomID[k]=h.hit.geomID; packet.hit.primID[k]=h.hit.primID; packet.ray.tfar[k]=h.ray.tfar; } return; }
-        if *COH { let mut a = RTCIntersectArguments{flags: RTCRayQueryFlags::COHERENT, ..Default::default()}; unsafe { rtcIntersect8(valid, self.handle, packet, &mut a) }; return; }
         // SAFETY: a committed scene; aligned structs with the room the probe has checked.
         unsafe { rtcIntersect8(valid, self.handle, packet, null_mut()) }
     }
@@ -184,6 +181,3 @@ fn where_mapped(path: &Path) -> PathBuf {
     let mut embree = files.filter(|f| f.file_name().is_some_and(|n| n.to_string_lossy().starts_with("libembree4")));
     embree.next().unwrap_or(path).to_owned()
 }
-
-static ONE: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| std::env::var("ONE").is_ok());
-static COH: std::sync::LazyLock<bool> = std::sync::LazyLock::new(|| std::env::var("COH").is_ok());
