@@ -122,16 +122,21 @@ struct Sight {
     front: f64,
     /// Share of the picture that shows backs.
     back: f64,
+    /// True for a view from outside: the whole scene in one picture, preferred where it shows as much.
+    outside: bool,
 }
 
 impl Sight {
     fn score(&self, most: f64) -> f64 {
         // Relative to the best: few rays never meet all regions of a large mesh.
-        self.area / most.max(f64::MIN_POSITIVE) + 0.15 * self.front - 0.5 * self.back
+        let area = self.area / most.max(f64::MIN_POSITIVE);
+        area + 0.15 * self.front - 0.5 * self.back + if self.outside { 0.1 } else { 0.0 }
     }
 }
 
 fn look(tracer: &Tracer, regions: &Regions, camera: Camera) -> (Camera, Sight) {
+    let (low, high) = tracer.stage().bounds();
+    let outside = camera.eye.cmplt(low).any() || camera.eye.cmpgt(high).any();
     let seen = Visibility::cast(tracer, &camera, 1);
     let [front, back, _] = seen.shares();
     let region = |pixel| regions.of_patch.get(seen.samples(pixel)[0] as usize).copied();
@@ -139,7 +144,7 @@ fn look(tracer: &Tracer, regions: &Regions, camera: Camera) -> (Camera, Sight) {
     in_sight.sort_unstable();
     in_sight.dedup();
     let area = in_sight.iter().map(|r| regions.areas[*r]).sum();
-    (camera, Sight { area, front, back })
+    (camera, Sight { area, front, back, outside })
 }
 
 #[cfg(test)]
