@@ -35,16 +35,18 @@ pub(super) fn significant(x: f64, figures: usize) -> String {
     format!("{rounded:.*}", (figures as i32 - 1 - exponent).max(0) as usize)
 }
 
-/// Numbers of one column, all to the place that shows four figures of the largest; `sign` shows a plus.
-pub(super) fn column(numbers: &[f64], sign: bool) -> Vec<String> {
+/// Places after the point that show four figures of the largest number; `None` where plain notation would not do.
+pub(super) fn places(numbers: &[f64]) -> Option<usize> {
     let largest = numbers.iter().filter(|x| x.is_finite()).fold(0.0, |m: f64, x| m.max(x.abs()));
     let exponent = largest.log10().floor();
-    let plus = |x: f64, text: String| if sign && x > 0.0 { format!("+{text}") } else { text };
-    if !(-6.0..=6.0).contains(&exponent) {
-        return numbers.iter().map(|x| plus(*x, number(*x))).collect();
-    }
-    let places = (3.0 - exponent).max(0.0) as usize;
-    numbers.iter().map(|x| plus(*x, format!("{x:.places$}"))).collect()
+    (-6.0..=6.0).contains(&exponent).then(|| (3.0 - exponent).max(0.0) as usize)
+}
+
+/// Numbers of one column, all to the same place; `sign` shows a plus.
+pub(super) fn column(numbers: &[f64], places: Option<usize>, sign: bool) -> Vec<String> {
+    let text = |x: f64| places.map_or_else(|| number(x), |p| format!("{x:.p$}"));
+    let plus = |x: f64| if sign && x > 0.0 { "+" } else { "" };
+    numbers.iter().map(|x| format!("{}{}", plus(*x), text(*x))).collect()
 }
 
 /// A round number (a mark, a limit) without trailing zeros.
@@ -148,9 +150,10 @@ mod tests {
     fn four_figures() {
         let shown = [0.0, 1.0, 0.99996, 12.3456, 0.00012345, 1.2345e-9, -42.0, 1234567.0, 3.5e9].map(number);
         assert_eq!(shown, ["0", "1.000", "1.000", "12.35", "0.0001234", "1.23e-9", "-42.00", "1235000", "3.50e9"]);
-        assert_eq!(column(&[0.01245, -0.0089987, 0.0], true), ["+0.01245", "-0.00900", "0.00000"]);
-        assert_eq!(column(&[17.25, 0.5], false), ["17.25", "0.50"]);
-        assert_eq!(column(&[3e-9, f64::NAN], false), ["3.00e-9", "NaN"]);
+        let shown = |x: &[f64], sign| column(x, places(x), sign);
+        assert_eq!(shown(&[0.01245, -0.0089987, 0.0], true), ["+0.01245", "-0.00900", "0.00000"]);
+        assert_eq!(shown(&[17.25, 0.5], false), ["17.25", "0.50"]);
+        assert_eq!(shown(&[3e-9, f64::NAN], false), ["3.00e-9", "NaN"]);
         assert_eq!([0.1 + 0.2, 2e-9, -0.015].map(round_number), ["0.3", "2e-9", "-0.015"]);
         assert_eq!([0, 999, 1000, 12_700_000].map(count), ["0", "999", "1,000", "12,700,000"]);
     }

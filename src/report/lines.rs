@@ -138,10 +138,13 @@ pub fn worst_lines(record: &Record) -> Vec<WorstLine> {
         Level::Element => Vec::new(),
     };
     let worst = &record.comparison.worst;
-    let of = |get: fn(&WorstPatch) -> f64, sign| column(&worst.iter().map(get).collect::<Vec<_>>(), sign);
-    let references = of(|w| w.reference, false);
-    let solutions = of(|w| w.solution, false);
-    let differences = of(|w| w.difference, true);
+    let of = |get: fn(&WorstPatch) -> f64| -> Vec<f64> { worst.iter().map(get).collect() };
+    let (reference, solution, difference) = (of(|w| w.reference), of(|w| w.solution), of(|w| w.difference));
+    // Both sides to a place at which they differ.
+    let fine = places(&difference).map(|p| p.saturating_sub(2));
+    let both = places(&[reference.clone(), solution.clone()].concat()).map(|p| p.max(fine.unwrap_or(0)));
+    let (references, solutions) = (column(&reference, both, false), column(&solution, both, false));
+    let differences = column(&difference, places(&difference), true);
     let line = |(k, w): (usize, &WorstPatch)| {
         let error = w.std_err.map(|e| e.hypot(own.get(w.patch).copied().flatten().unwrap_or(0.0)));
         WorstLine {
@@ -206,6 +209,17 @@ mod tests {
         limit.estimate = Estimate { value: 0.0, std_err: None, low: 0.0, high: f64::MAX };
         let line = metric_lines(&r).into_iter().find(|l| l.key == "top1").expect("a line");
         assert_eq!((line.value.as_str(), line.limit.as_deref(), line.estimate), ("unknown", Some("1.35 %"), None));
+    }
+
+    #[test]
+    fn what_differs_little_is_shown_to_the_place_where_it_differs() {
+        let mut r = record();
+        r.comparison.worst.truncate(1);
+        let w = &mut r.comparison.worst[0];
+        (w.reference, w.solution, w.difference) = (2.0, 2.0003561, 0.0003561);
+        let line = worst_lines(&r).remove(0);
+        assert_eq!((line.reference.as_str(), line.solution.as_str()), ("2.00000", "2.00036"));
+        assert_eq!(line.difference, "+0.0003561");
     }
 
     #[test]
