@@ -46,7 +46,7 @@ const MAP: &[(&str, &[&str])] = &[
             "io",
         ],
     ),
-    ("report", &["math", "view", "scene", "solution", "metrics", "render", "study", "io"]),
+    ("report", &["math", "stats", "view", "scene", "solution", "metrics", "render", "study", "io"]),
     (
         "cli",
         &[
