@@ -70,10 +70,11 @@ fn worth(camera: &Camera, facets: &[Facet], tree: &BoxTree, tolerance: f64) -> f
 fn front_met(origin: DVec3, direction: DVec3, facets: &[Facet], tree: &BoxTree, tolerance: f64) -> Option<u32> {
     let (mut nearest, mut front) = (f64::INFINITY, None);
     tree.along(origin, direction, |i| {
-        if let Some((t, dark)) = meet(&facets[i as usize], origin, direction, tolerance).filter(|(t, _)| *t > 0.0) {
-            if t < nearest - tolerance || (t < nearest + tolerance && !dark) {
-                (nearest, front) = (t, (!dark).then_some(i));
-            }
+        let met = meet(&facets[i as usize], origin, direction, tolerance).filter(|(t, _)| *t > 0.0);
+        if let Some((t, dark)) = met
+            && (t < nearest - tolerance || (t < nearest + tolerance && !dark))
+        {
+            (nearest, front) = (t, (!dark).then_some(i));
         }
         nearest + 2.0 * tolerance
     });
