@@ -12,8 +12,8 @@ use etalon::solution::FormFactors;
 use std::f64::consts::SQRT_2;
 
 /// All of the top; a quarter of the rest on each side.
-const TOP: f64 = 0.554_126_423_979_571_987_123_078_8;
-const SIDE: f64 = 0.111_468_394_005_107_003_219_230_3;
+const TOP: f64 = 0.554_126_423_979_572;
+const SIDE: f64 = 0.111_468_394_005_107;
 
 fn params(resolution: u32) -> Params {
     Params { resolution, ..Params::default() }
@@ -43,7 +43,7 @@ mod table {
     #[test]
     fn midpoint_sums_are_those_of_1985() {
         let known = [
-            (10, 0.555583289713908, 0.112469265144273, 1.005460350291000),
+            (10, 0.555583289713908, 0.112469265144273, 1.005460350291),
             (20, 0.554491037559693, 0.111716594376106, 1.001357415064116),
             (50, 0.554184779162951, 0.111508017510079, 1.000216849203267),
             (64, 0.554162041919093, 0.111492574280204, 1.000132339039911),
@@ -80,7 +80,7 @@ mod table {
             (50, true, 24, 24, 5.970952615743057e-5, 5.969891939568165e-5),
             (50, true, 24, 0, 1.324826486402487e-4, 1.324657227742041e-4),
             (50, false, 0, 0, 1.015882154090547e-5, 1.016963842782818e-5),
-            (50, false, 0, 24, 1.297976891107969e-4, 1.298164083187200e-4),
+            (50, false, 0, 24, 1.297976891107969e-4, 1.2981640831872e-4),
             (50, false, 24, 0, 2.648932200660443e-6, 2.649314455484083e-6),
             (50, false, 24, 24, 5.850465066603051e-5, 5.850494100776802e-5),
             (100, true, 0, 0, 1.272560863695477e-4, 1.272730401665281e-4),
@@ -230,6 +230,14 @@ mod centre_value {
     }
 
     #[test]
+    fn so_it_does_behind_a_slit() {
+        let stage = obstructed(&[flat(-0.5, -0.5, -0.05, 0.5, 0.5), flat(0.05, -0.5, 0.5, 0.5, 0.5)]);
+        let errors = [32, 64, 128, 256, 512].map(|n| (n, mean_error(&stage, n, 0.05464157203)));
+        let s = slope(&errors);
+        assert!((-2.2..-0.9).contains(&s), "slope {s}, {errors:?}");
+    }
+
+    #[test]
     fn the_error_against_the_truth_falls_to_what_the_centre_leaves() {
         let stage = opposed(1.0);
         let (centre, average) = (0.239456470461, 0.199824895698);
@@ -271,10 +279,16 @@ mod centre_value {
         ];
         let centred = [flat(-0.25, -0.25, 0.25, 0.25, z)];
         // (plates, value at the centre, resolution at which edges and pixels agree)
-        let known = [(&centred[..], 0.0, 100), (&slit[..], 0.05464157203, 200), (&pinhole[..], 1.273069803e-4, 1000)];
+        let facet = [flat(-0.25, -0.25, 0.25, 0.25, 0.75)];
+        let known = [
+            (&centred[..], 0.0, 100),
+            (&facet[..], 0.1161388811, 300),
+            (&slit[..], 0.05464157203, 200),
+            (&pinhole[..], 1.273069803e-4, 1000),
+        ];
         for (plates, centre, n) in known {
             let f = item_sum(&obstructed(plates), &exact(n));
-            assert!(close(f, centre, 1e-11), "{n}: {f} for {centre}");
+            assert!(close(f, centre, 6e-11), "{n}: {f} for {centre}");
         }
     }
 }
@@ -417,20 +431,18 @@ mod sides {
     #[test]
     fn of_two_plates_back_to_back_each_shows_its_front() {
         // Tilted, so that the two planes are computed with different rounding; in either order.
-        let plate = [p(-0.4, -0.3, 0.41), p(0.5, -0.31, 0.52), p(0.45, 0.4, 0.63), p(-0.45, 0.41, 0.52)];
-        let plate: Vec<DVec3> = plate.iter().map(|v| p(v.x, v.y, 0.5 + 0.11 * v.x + 0.13 * v.y)).collect();
+        let plate =
+            [(-0.4, -0.3), (0.5, -0.31), (0.45, 0.4), (-0.45, 0.41)].map(|(x, y)| p(x, y, 0.5 + 0.11 * x + 0.13 * y));
         for front_first in [true, false] {
             let mut b = Build(opposed(1.0));
+            let front = |b: &mut Build| b.surface(&plate, Grid::Quad { na: 3, nb: 2 }, 0.5, 0.0);
+            let back = |b: &mut Build| b.back_of(&plate, Grid::Whole, 0.5, 0.0);
             let (up, down) = if front_first {
-                (b.surface(&plate, Grid::Quad { na: 3, nb: 2 }, 0.5, 0.0), 8)
+                let up = front(&mut b);
+                (up, back(&mut b))
             } else {
-                (8, b.back_of(&plate, Grid::Whole, 0.5, 0.0))
-            };
-            let (up, down) = if front_first {
-                (up, b.back_of(&plate, Grid::Whole, 0.5, 0.0))
-            } else {
-                let _ = up;
-                (b.surface(&plate, Grid::Quad { na: 3, nb: 2 }, 0.5, 0.0), down)
+                let down = back(&mut b);
+                (front(&mut b), down)
             };
             for (patch, sees) in [(0, down..down + 1), (1, up..up + 6)] {
                 let seen = item_buffer(&b.0, patch, &params(100)).unwrap().unwrap();
@@ -438,5 +450,206 @@ mod sides {
                 assert!(sees.map(|j| seen.count(Item::patch(j as u32))).sum::<usize>() > 3000);
             }
         }
+    }
+
+    #[test]
+    fn the_sides_of_a_plate_may_be_rounded_apart() {
+        for gap in [-1e-9, 1e-9] {
+            let mut b = Build(opposed(1.0));
+            let up = b.surface(&flat(-0.5, -0.5, 0.5, 0.5, 0.5), Grid::Whole, 0.5, 0.0);
+            let down = b.back_of(&flat(-0.5, -0.5, 0.5, 0.5, 0.5 + gap), Grid::Whole, 0.5, 0.0);
+            let f = factors(&b.0, &params(50));
+            for (i, j) in [(0, down), (1, up), (up, 1), (down, 0)] {
+                assert_eq!((f.row(i).count(), f.row(i).next().unwrap().0), (1, j), "gap {gap}, row {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wall_wholly_behind_is_not_seen() {
+        let mut b = ground();
+        b.surface(&[p(2.0, -1.0, -1.0), p(2.0, -1.0, 0.0), p(2.0, 1.0, 0.0), p(2.0, 1.0, -1.0)], Grid::Whole, 0.5, 0.0);
+        b.surface(&flat(3.0, 3.0, 4.0, 4.0, 0.0), Grid::Whole, 0.5, 0.0);
+        assert_eq!(factors(&b.0, &params(50)).stored(), 0);
+    }
+}
+
+mod contact {
+    use super::*;
+    use etalon::math::subtract_convex;
+    use etalon::scene::NO_FACET;
+
+    /// Takes what lies under a polygon out of a patch, as the scene loader does where two fronts touch.
+    fn cover(stage: &mut Stage, patch: usize, by: &[DVec3]) {
+        let q = &mut stage.patches[patch];
+        q.region = Region { pieces: q.region.pieces.iter().flat_map(|piece| subtract_convex(piece, by)).collect() };
+        q.area = q.region.area();
+    }
+
+    /// A room with a 3 x 3 floor and a box that stands on it, its base across four floor patches or within one.
+    fn box_on_floor(lo: DVec3, hi: DVec3) -> (Stage, usize) {
+        let mut b = Build::new();
+        b.room(DVec3::ZERO, DVec3::ONE, 3, 0.5, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let first = b.0.patches.len();
+        b.solid(lo, hi, 1, 0.5);
+        let base = b.0.patches[first].corners.clone();
+        for floor in 0..9 {
+            cover(&mut b.0, floor, &base);
+        }
+        cover(&mut b.0, first, &flat(0.0, 0.0, 1.0, 1.0, 0.0));
+        (b.0, first)
+    }
+
+    #[test]
+    fn covered_floor_neither_sees_nor_is_seen() {
+        for (lo, hi) in [
+            (p(0.4, 0.35, 0.0), p(0.62, 0.6, 0.5)),
+            (p(0.15, 0.2, 0.0), p(0.7, 0.8, 0.3)),
+            (p(1.0 / 3.0, 1.0 / 3.0, 0.0), p(2.0 / 3.0, 2.0 / 3.0, 0.4)),
+        ] {
+            let (stage, base) = box_on_floor(lo, hi);
+            for rotation in [0.0, 33.0] {
+                let set = Params { rotation, ..params(50) };
+                let f = factors(&stage, &set);
+                let total = DeltaTable::new(50, Delta::Midpoint).total();
+                for i in 0..f.n {
+                    let wanted = if stage.patches[i].is_present() { total } else { 0.0 };
+                    assert!(close(f.row_sum(i), wanted, 1e-13), "row {i} from {lo}: {}", f.row_sum(i));
+                    assert_eq!(f.get(i, base), 0.0, "the base is seen by {i}");
+                }
+                assert_eq!(f.row(base).count(), 0);
+            }
+        }
+    }
+
+    #[test]
+    fn the_hemicube_moves_out_from_under_the_box() {
+        let (stage, _) = box_on_floor(p(0.4, 0.35, 0.0), p(0.62, 0.6, 0.5));
+        let eye = item_buffer(&stage, 4, &params(10)).unwrap().unwrap().eye;
+        let inside = |lo: f64, v: f64, hi: f64| (lo..=hi).contains(&v);
+        assert!(inside(1.0 / 3.0, eye.x, 2.0 / 3.0) && inside(1.0 / 3.0, eye.y, 2.0 / 3.0), "{eye}");
+        assert!(!(inside(0.4, eye.x, 0.62) && inside(0.35, eye.y, 0.6)), "{eye}");
+    }
+
+    #[test]
+    fn a_plate_lying_face_down_shows_its_back() {
+        let mut b = Build(opposed(1.0));
+        let plate = flat(-0.25, -0.25, 0.25, 0.25, 0.0);
+        let down = b.back_of(&plate, Grid::Whole, 0.5, 0.0);
+        cover(&mut b.0, 0, &plate);
+        cover(&mut b.0, down, &flat(-0.5, -0.5, 0.5, 0.5, 0.0));
+        let seen = item_buffer(&b.0, 1, &params(100)).unwrap().unwrap();
+        // The plate's half-width is a quarter of its distance: 25 of 100 pixels each way.
+        assert_eq!((seen.count(Item::BACK), seen.count(Item::patch(0))), (25 * 25, 50 * 50 - 25 * 25));
+        assert!(item_buffer(&b.0, down, &params(100)).unwrap().is_none());
+    }
+
+    #[test]
+    fn what_is_absent_is_not_there() {
+        let mut b = Build(opposed(1.0));
+        let plate = b.surface(&flat(-0.5, -0.5, 0.5, 0.5, 0.5), Grid::Whole, 0.5, 3.0);
+        let q = &mut b.0.patches[plate];
+        (q.corners, q.normal, q.area, q.region, q.facet) = (vec![], DVec3::ZERO, 0.0, Region::default(), NO_FACET);
+        let set = params(50);
+        let f = factors(&b.0, &set);
+        assert_eq!(f.get(0, 1), item_sum(&opposed(1.0), &set));
+        assert_eq!((f.n, f.row(plate).count()), (3, 0));
+        let (radiosity, info) = solve(&b.0, &set, &|_| ()).unwrap();
+        assert_eq!(radiosity.of(plate), &[0.0], "an absent lamp is dark");
+        assert!(info.row_sums.min > 0.2, "absent patches do not count in the row sums: {:?}", info.row_sums);
+    }
+}
+
+mod builtin {
+    use super::*;
+    use etalon::io::scene::builtin;
+
+    #[test]
+    fn closed_rooms_with_furniture_on_the_floor_are_full() {
+        for name in ["furnace", "furnace-l", "l-room", "furnished-room", "dynamic-cube"] {
+            let scene = builtin(name).unwrap();
+            let stage = scene.at(scene.edits.len()).unwrap();
+            for set in [params(20), Params { rotation: 45.0, ..params(50) }] {
+                let total = DeltaTable::new(set.resolution, set.delta).total();
+                let f = factors(&stage, &set);
+                for (i, patch) in stage.patches.iter().enumerate() {
+                    let wanted = if patch.is_present() { total } else { 0.0 };
+                    assert!(close(f.row_sum(i), wanted, 1e-12), "{name}, {set}, patch {i}: {}", f.row_sum(i));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn in_the_cornell_box_nothing_is_seen_from_behind() {
+        let stage = builtin("cornell-box-coarse").unwrap().at(0).unwrap();
+        let (f, total) = (factors(&stage, &params(50)), DeltaTable::new(50, Delta::Midpoint).total());
+        for i in 0..f.n {
+            let seen = item_buffer(&stage, i, &params(50)).unwrap();
+            let backs = seen.map_or(0, |s| s.count(Item::BACK));
+            assert_eq!(backs, 0, "patch {i} on {}", stage.surface_name(i));
+            assert!(f.row_sum(i) < total + 1e-12);
+        }
+        // Light leaves through the open front.
+        assert!((0..f.n).any(|i| f.row_sum(i) < 0.9));
+    }
+}
+
+mod solution {
+    use super::*;
+
+    #[test]
+    fn a_white_furnace_shows_the_excess_of_the_table() {
+        let mut b = Build::new();
+        b.room(DVec3::ZERO, DVec3::ONE, 4, 0.9, [1.0; 6]);
+        for (set, wanted) in [(params(50), 10.0195546), (exact(50), 10.0)] {
+            let (radiosity, info) = solve(&b.0, &Params { tolerance: 1e-14, ..set }, &|_| ()).unwrap();
+            assert!(radiosity.values.iter().all(|v| close(*v, wanted, 1e-7)), "{set}: {}", radiosity.values[0]);
+            assert!(close(info.row_sums.max, info.row_sums.min, 1e-13) && info.residual[0] < 1e-13);
+        }
+    }
+
+    #[test]
+    fn form_factors_serve_again_when_the_lights_change() {
+        let mut b = Build::new();
+        b.room(DVec3::ZERO, DVec3::ONE, 3, 0.6, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let set = params(50);
+        let f = factors(&b.0, &set);
+        let (direct, _) = solve(&b.0, &set, &|_| ()).unwrap();
+        assert_eq!(solve_with(&b.0, &f, &set).unwrap().0, direct);
+        b.0.materials[0].emission = vec![2.0];
+        let (doubled, _) = solve_with(&b.0, &f, &set).unwrap();
+        assert!(doubled.values.iter().zip(&direct.values).all(|(two, one)| close(two / one, 2.0, 1e-13)));
+        let refused = solve_with(&b.0, &FormFactors::from_exact_rows(vec![vec![]; 3]), &set).unwrap_err();
+        assert!(refused.to_string().contains("3 patches and the scene has 54"), "{refused}");
+    }
+
+    #[test]
+    fn the_same_bytes_on_one_thread_and_on_two() {
+        let mut b = Build::new();
+        b.room(DVec3::ZERO, p(1.0, 1.1, 0.9), 5, 0.6, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        b.solid(p(0.2, 0.3, 0.2), p(0.5, 0.6, 0.5), 2, 0.5);
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| (factors(&b.0, &params(64)), solve(&b.0, &params(64), &|_| ()).unwrap()))
+        };
+        assert_eq!(on(1), on(2));
+    }
+
+    /// `size` x `size` patches per face of a unit cube whose floor emits.
+    fn iterations(size: u32, reflectance: f64) -> usize {
+        let mut b = Build::new();
+        b.room(DVec3::ZERO, DVec3::ONE, size, reflectance, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        solve(&b.0, &params(50), &|_| ()).unwrap().1.iterations[0]
+    }
+
+    #[test]
+    fn iterations_depend_on_reflectance_and_not_on_size() {
+        // The paper sees six to eight "regardless of the size of the matrix"; the whole table is printed by
+        // `cargo run --release --example hemicube_iterations`.
+        let counts = [0.3, 0.5, 0.7, 0.9].map(|rho| [4, 8].map(|size| iterations(size, rho)));
+        assert!(counts.iter().all(|[small, large]| small.abs_diff(*large) <= 1), "{counts:?}");
+        assert!(counts.windows(2).all(|w| w[0][0] < w[1][0]), "{counts:?}");
+        assert!((6..=8).contains(&counts[1][0]), "{counts:?}");
     }
 }

@@ -1,6 +1,6 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
-use super::values::{Fraction, PerLevel, StateChoice, Span};
+use super::values::{Fraction, PerLevel, Span, StateChoice};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 

@@ -3,7 +3,7 @@
 use super::Visibility;
 use crate::math::DVec3;
 use crate::raycast::Tracer;
-use crate::scene::Stage;
+use crate::scene::{Grid, Patch, Stage};
 use crate::view::Camera;
 
 /// Size of a fitted picture, pixels.
@@ -14,14 +14,17 @@ const TRIAL: [u32; 2] = [48, 36];
 const FOV: [f64; 2] = [38.0, 72.0];
 
 /// The camera that shows most of the scene: three-quarter views from outside and from the corners inside are
-/// tried, and the one that sees the fronts of the largest share of the surfaces wins.
+/// tried, and the one that sees the fronts of the largest area wins, few backs and little background counting too.
 ///
 /// z is taken as up.
 pub fn fit_camera(tracer: &Tracer) -> Camera {
-    let stage = tracer.stage();
+    let regions = Regions::of(tracer.stage());
+    let tried: Vec<(Camera, Sight)> =
+        candidates(tracer.stage()).into_iter().map(|c| look(tracer, &regions, c)).collect();
+    let most = tried.iter().map(|(_, s)| s.area).fold(0.0, f64::max);
     let mut best: Option<(f64, Camera)> = None;
-    for camera in candidates(stage) {
-        let score = score(tracer, &camera);
+    for (camera, sight) in tried {
+        let score = sight.score(most);
         // The first of equals stays: the order of candidates is the order of preference.
         if best.as_ref().is_none_or(|(s, _)| score > *s + 1e-9) {
             best = Some((score, camera));
@@ -76,22 +79,72 @@ fn fitted(eye: DVec3, target: DVec3, fov: f64) -> Camera {
     Camera { name: "fitted".into(), eye, target, up: DVec3::Z, fov, size: TRIAL }
 }
 
-/// How much a camera shows: the share of all surfaces (by area) whose fronts it sees, plus how little of the
-/// picture is wasted on backs and background.
-fn score(tracer: &Tracer, camera: &Camera) -> f64 {
-    let stage = tracer.stage();
-    let seen = Visibility::cast(tracer, camera, 1);
-    let [front, back, _] = seen.shares();
-    let mut in_sight = vec![false; stage.facets.len()];
-    for pixel in 0..seen.pixel_count() {
-        if let Some(patch) = stage.patches.get(seen.samples(pixel)[0] as usize) {
-            in_sight[patch.facet as usize] = true;
+/// Regions along each edge of a quadrilateral.
+const DIVISION: u32 = 3;
+
+/// Quadrilaterals in ninths, everything else whole: large enough to be hit by the few rays of a trial picture
+/// from near and far alike.
+struct Regions {
+    /// Region of each patch.
+    of_patch: Vec<usize>,
+    /// Area of each region, m^2.
+    areas: Vec<f64>,
+}
+
+impl Regions {
+    fn of(stage: &Stage) -> Self {
+        let of_patch: Vec<usize> = stage.patches.iter().map(|p| region(stage, p)).collect();
+        let sides = 2 * (DIVISION * DIVISION) as usize;
+        let mut areas = vec![0.0; stage.facets.len() * sides];
+        for (patch, region) in stage.patches.iter().zip(&of_patch).filter(|(p, _)| p.is_present()) {
+            areas[*region] += patch.area;
         }
+        Self { of_patch, areas }
     }
-    let area = |f: usize| crate::math::area(&stage.facets[f].vertices);
-    let total: f64 = (0..stage.facets.len()).map(area).sum();
-    let shown: f64 = (0..stage.facets.len()).filter(|f| in_sight[*f]).map(area).sum();
-    shown / total + 0.25 * front - 0.5 * back
+}
+
+fn region(stage: &Stage, patch: &Patch) -> usize {
+    let Some(facet) = stage.facets.get(patch.facet as usize) else { return 0 };
+    let back = patch.normal.dot(facet.normal) < 0.0;
+    let cell = match facet.grid {
+        Grid::Quad { na, nb } => patch.a * DIVISION / na + patch.b * DIVISION / nb * DIVISION,
+        Grid::Triangle { .. } | Grid::Whole => 0,
+    };
+    let side = patch.facet as usize * 2 + usize::from(back);
+    side * (DIVISION * DIVISION) as usize + cell as usize
+}
+
+/// How much a camera shows.
+struct Sight {
+    /// Area of the regions in sight, m^2.
+    area: f64,
+    /// Share of the picture that shows patches.
+    front: f64,
+    /// Share of the picture that shows backs.
+    back: f64,
+    /// True for a view from outside: the whole scene in one picture, preferred where it shows as much.
+    outside: bool,
+}
+
+impl Sight {
+    fn score(&self, most: f64) -> f64 {
+        // Relative to the best: few rays never meet all regions of a large mesh.
+        let area = self.area / most.max(f64::MIN_POSITIVE);
+        area + 0.15 * self.front - 0.5 * self.back + if self.outside { 0.1 } else { 0.0 }
+    }
+}
+
+fn look(tracer: &Tracer, regions: &Regions, camera: Camera) -> (Camera, Sight) {
+    let (low, high) = tracer.stage().bounds();
+    let outside = camera.eye.cmplt(low).any() || camera.eye.cmpgt(high).any();
+    let seen = Visibility::cast(tracer, &camera, 1);
+    let [front, back, _] = seen.shares();
+    let region = |pixel| regions.of_patch.get(seen.samples(pixel)[0] as usize).copied();
+    let mut in_sight: Vec<usize> = (0..seen.pixel_count()).filter_map(region).collect();
+    in_sight.sort_unstable();
+    in_sight.dedup();
+    let area = in_sight.iter().map(|r| regions.areas[*r]).sum();
+    (camera, Sight { area, front, back, outside })
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod fit;
 mod hash;
 mod model;
 mod numbering;
+mod plain;
 mod region;
 mod stage;
 mod states;

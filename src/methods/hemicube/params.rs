@@ -68,7 +68,7 @@ impl Params {
 
     /// Refuses settings that no hemi-cube can have.
     pub fn validated(self) -> Result<Self, HemicubeError> {
-        if !(4..=4096).contains(&self.resolution) || self.resolution % 2 != 0 {
+        if !(4..=4096).contains(&self.resolution) || !self.resolution.is_multiple_of(2) {
             return Err(HemicubeError::Resolution { got: self.resolution });
         }
         let bad = |key: &str, value: f64, wanted| Err(bad_value(key, &value.to_string(), wanted));

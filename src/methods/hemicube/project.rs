@@ -136,21 +136,23 @@ impl Projector {
         self.candidates.clear();
         self.backs.clear();
         for shape in &world.shapes {
-            // The eye's distance before the plane; the plane the hemi-cube stands on, and others seen edge on,
-            // show nothing.
+            // The eye's distance before the plane. The plane the hemi-cube stands on shows nothing.
             let before = shape.normal.dot(eye) - shape.offset;
             let normal = frame.to_local(shape.normal);
-            if before > world.in_plane {
+            if before > world.coincident {
                 for which in shape.fronts.clone() {
                     let c = self.candidate(world, which, Item::patch(shape.patch), normal, -before);
                     self.candidates.extend(c);
                 }
-            } else if before < -world.in_plane {
-                let c = self.candidate(world, shape.back, Item::BACK, normal, -before);
+            } else if before < -world.coincident {
+                // Behind everything in its plane: the front of a thin plate beats the back of its other side,
+                // though the two planes may be rounded differently.
+                let offset = world.coincident - before;
+                let c = self.candidate(world, shape.back, Item::BACK, normal, offset);
                 self.backs.extend(c);
             }
         }
-        // Fronts before backs: of two at the same depth the first stays, so a front beats a back.
+        // Of two at the same depth the first stays: the front of the lower patch number, and never a back.
         self.candidates.append(&mut self.backs);
     }
 

@@ -5,12 +5,9 @@
 //! covered, the polygon it is in contact with is drawn in the same place, with its own back.
 
 use crate::math::{DVec3, area, centroid, unit_normal};
-use crate::scene::{Patch, Stage};
+use crate::scene::{COINCIDENCE_TOLERANCE, Patch, Stage};
 use std::collections::HashMap;
 use std::ops::Range;
-
-/// A point this close to a plane, as a fraction of the scene's largest coordinate, lies in it.
-const IN_PLANE: f64 = 1e-12;
 
 /// A standing polygon.
 #[derive(Debug, Clone)]
@@ -36,8 +33,8 @@ pub struct World {
     corners: Vec<u32>,
     /// Loop k holds `corners[loops[k] .. loops[k + 1]]`.
     loops: Vec<u32>,
-    /// Distance from a plane up to which a point counts as lying in it, metres.
-    pub(super) in_plane: f64,
+    /// Planes closer than this are one plane, as everywhere in a stage, metres.
+    pub(super) coincident: f64,
     pub(super) patches: usize,
 }
 
@@ -47,10 +44,10 @@ impl World {
         let mut builder = Builder::default();
         let standing = stage.patches.iter().enumerate().filter(|(_, p)| p.corners.len() >= 3);
         let shapes = standing.map(|(number, patch)| builder.shape(number, patch)).collect();
-        let largest = builder.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
+        let (lo, hi) = stage.bounds();
         Self {
             shapes,
-            in_plane: IN_PLANE * largest,
+            coincident: COINCIDENCE_TOLERANCE * lo.distance(hi),
             vertices: builder.vertices,
             corners: builder.corners,
             loops: builder.loops,
