@@ -458,18 +458,6 @@ fn built_in_scenes_open_by_name_and_as_files() {
     }
 }
 
-// ---- cameras ----
-
-#[test]
-fn a_scene_without_camera_gets_one_that_sees_it() {
-    let closed = builtin("furnace").unwrap().at(0).unwrap();
-    let eye = closed.cameras[0].eye;
-    assert!(eye.min_element() > 0.0 && eye.max_element() < 1.0, "inside: {eye}");
-    let open = scene(&square("floor", 0.0, true, "")).at(0).unwrap();
-    assert!(open.cameras[0].eye.z > 0.1, "on the radiating side: {}", open.cameras[0].eye);
-    assert_eq!(builtin("cornell-box").unwrap().at(0).unwrap().cameras[0].name, "main");
-}
-
 // ---- patches as files ----
 
 #[test]
