@@ -2,7 +2,6 @@
 
 use super::contact::{Covers, Overlap, Relation, coincidences};
 use super::divide::{Divider, reversed};
-use super::fit::fitted_camera;
 use super::numbering::{FaceNumbers, Numbering};
 use super::states::Standing;
 use super::{Element, Face, Facet, NO_FACET, Patch, Region, Scene, SceneError, Stage, StageSurface, Surface};
@@ -36,10 +35,7 @@ impl Scene {
             enclosure: self.enclosure,
             materials: standing.materials,
             surfaces: self.surfaces.iter().map(names).collect(),
-            cameras: match self.cameras.as_slice() {
-                [] => fitted_camera(&facets).into_iter().collect(),
-                given => given.to_vec(),
-            },
+            cameras: self.cameras.clone(),
             facets,
             patches,
             elements,

@@ -7,7 +7,6 @@ mod build;
 mod contact;
 mod divide;
 mod error;
-mod fit;
 mod hash;
 mod model;
 mod numbering;

@@ -120,7 +120,7 @@ fn syntax(source: &Source, e: &toml::de::Error) -> SceneFileError {
         [unknown, known @ ..] if message.starts_with("unknown field") => {
             let mend = match nearest(unknown, known.iter().copied()) {
                 Some(near) => format!("did you mean \"{near}\"?"),
-                None => "leave it out; the scene format is described in the README".into(),
+                None => "leave it out; references/scene-format.md lists all keys".into(),
             };
             (Refusal::Key, mend)
         }
