@@ -1,7 +1,7 @@
 //! The two tables every report shows, built once: metrics, and the worst patches.
 
 use super::asked::{Level, is_reflected};
-use super::format::{column, is_known, percent, percent_estimate, percent_exact, significant};
+use super::format::{column, is_known, percent, percent_estimate, percent_exact, places, significant};
 use crate::metrics::{LimitOutcome, Verdict, WorstPatch};
 use crate::render::luminance_std_err;
 use crate::stats::Estimate;
