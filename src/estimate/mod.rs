@@ -1,1 +1,12 @@
-//! (to come)
+//! Form factors by rays: who emits, how many rays, and the hit counts that come of it.
+
+mod counts;
+mod emitter;
+mod plan;
+mod replicate;
+mod rows;
+
+pub use counts::{Entry, HitCounts};
+pub use emitter::{Emitter, element_emitters, patch_emitters};
+pub use plan::{Plan, Reached};
+pub use rows::{Casting, cast, sample_batches};

@@ -1,1 +1,9 @@
-//! (to come)
+//! The candidates: radiosity methods that the reference judges.
+
+pub mod gather;
+pub mod hemicube;
+mod info;
+mod method;
+
+pub use info::{MethodInfo, PatchVectors, RowSums};
+pub use method::{Method, MethodError};

@@ -1,6 +1,21 @@
-//! How far a solution is from the reference, and what that means: eq. 7 of [GSG90], top 1 %, bias, energy.
-//! Areas, weights and names come in as data; [`Decision`] is the only place that decides.
+//! How far a solution is from the reference, and what that means: eq. 7 of GSG90, top 1 %, bias, energy.
+//! Areas, weights and names come in as data; [`decide`] is the only place that decides.
 
+mod bias;
+mod check;
+mod compare;
+mod error;
+mod quantity;
+mod rms;
+mod sums;
+mod top1;
 mod types;
+mod verdict;
 
+pub use bias::relative_bias;
+pub use compare::compare;
+pub use error::MetricsError;
+pub use rms::{Rms, relative_rms};
+pub use top1::{top1_count, top1_rms, top1_set};
 pub use types::{Comparison, Decision, Judged, LimitOutcome, Limits, Truth, Verdict, WorstPatch};
+pub use verdict::{decide, shared_confidence};

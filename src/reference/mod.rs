@@ -1,1 +1,10 @@
-//! (to come)
+//! The judge: reference radiosities with standard errors, and the check of the judge itself.
+
+mod error;
+mod patch_system;
+mod self_check;
+mod transport;
+
+pub use error::ReferenceError;
+pub use patch_system::{Options, Progress, Reference, check_size, compute};
+pub use self_check::{Evidence, test_reciprocity};

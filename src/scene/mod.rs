@@ -3,10 +3,23 @@
 //! A [`Scene`] is what the author wrote, all states at once; a [`Stage`] is what stands there in one
 //! state, divided into numbered patches. Everything downstream works on stages.
 
+mod build;
+mod contact;
+mod divide;
+mod error;
+mod fit;
+mod hash;
 mod model;
+mod numbering;
+mod plain;
 mod region;
 mod stage;
+mod states;
+mod tree;
 
+pub use contact::COINCIDENCE_TOLERANCE;
+pub use error::SceneError;
 pub use model::{Edit, Face, Grid, Material, Scene, Surface, Transform};
+pub use numbering::{MAX_ELEMENTS, MAX_PATCHES};
 pub use region::Region;
 pub use stage::{Element, Facet, NO_FACET, Patch, Stage, StageSurface};

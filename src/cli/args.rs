@@ -1,0 +1,307 @@
+//! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
+
+use super::values::{Fraction, PerLevel, Span, StateChoice};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Ray-traced reference validator and error metrics for radiosity and view factors.
+///
+/// Exit codes: 0 done, every limit met; 1 a limit is exceeded; 2 bad usage or input; 3 inconclusive;
+/// 4 the reference failed its own self-check; 70 a bug.
+#[derive(Debug, Parser)]
+#[command(name = "etalon", version, propagate_version = true, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Options that every command takes.
+    #[command(flatten)]
+    pub global: Global,
+}
+
+/// Options that every command takes.
+#[derive(Debug, Clone, Args)]
+pub struct Global {
+    /// Print one JSON object on stdout and nothing else.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Say only what was asked for.
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// Say more (settings in force, kernels, row sums).
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    /// Threads; default: all.
+    #[arg(long, global = true, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Ray kernel.
+    #[arg(long, global = true, value_enum, default_value_t = Kernel::Auto)]
+    pub kernel: Kernel,
+}
+
+/// Ray kernels by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Kernel {
+    /// Embree 4 where there is one, else the built-in.
+    Auto,
+    /// Embree 4.
+    Embree,
+    /// Pure Rust, double precision.
+    Builtin,
+    /// Embree 4 through the published wrapper (cargo feature `embree4-rs`).
+    #[value(name = "embree4-rs")]
+    Embree4Rs,
+}
+
+/// Commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Look at a scene.
+    #[command(subcommand)]
+    Scene(SceneCommand),
+    /// Form-factor matrix by ray casting, with standard errors.
+    FormFactors(FormFactorsArgs),
+    /// Reference radiosity, stored for re-use.
+    Reference(ReferenceArgs),
+    /// Run a candidate method.
+    Solve(SolveArgs),
+    /// Metrics of a solution against a reference (or another solution).
+    Compare(CompareArgs),
+    /// The same with limits and a verdict.
+    Check(CheckArgs),
+    /// Write the HTML report of a finished run again.
+    Report {
+        /// Directory that `check --report`, `compare --report` or `demo` wrote.
+        directory: PathBuf,
+    },
+    /// The whole chain on the Cornell box.
+    Demo {
+        /// Where the report goes.
+        #[arg(short, long, value_name = "DIR", default_value = "reports/demo")]
+        output: PathBuf,
+    },
+    /// Get what is missing on this machine.
+    #[command(subcommand)]
+    Setup(SetupCommand),
+    /// Ray kernels found, threads, self-test.
+    Doctor,
+}
+
+/// `etalon scene ...`
+#[derive(Debug, Subcommand)]
+pub enum SceneCommand {
+    /// Validate a scene.
+    Check {
+        /// Scene.
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Make findings an error (exit 1).
+        #[arg(long)]
+        strict: bool,
+    },
+    /// List the patches: what a solver needs to write a solution.
+    Patches {
+        /// Scene.
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// .csv, .obj or .ply.
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+    },
+}
+
+/// `etalon setup ...`
+#[derive(Debug, Subcommand)]
+pub enum SetupCommand {
+    /// Find an Embree 4, or fetch the pinned one into the user data folder.
+    Embree,
+}
+
+/// Which scene, in which state.
+#[derive(Debug, Clone, Args)]
+pub struct SceneArgs {
+    /// Scene file, or builtin:NAME.
+    pub scene: String,
+    /// State of a scene with edits: initial, the number of edits applied, or final.
+    #[arg(long, default_value = "final", value_name = "initial|K|final")]
+    pub state: StateChoice,
+    /// Longest patch edge, metres; overrides the file's max_edge.
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
+    pub max_edge: Option<f64>,
+}
+
+/// How many rays.
+#[derive(Debug, Clone, Args)]
+pub struct RayArgs {
+    /// Rays per patch over all randomisations, rounded up to R 2^m.
+    #[arg(long, default_value_t = 16_384, value_parser = clap::value_parser!(u64).range(1..))]
+    pub rays: u64,
+    /// Go on until this one-sigma relative error is reached, instead of --rays.
+    #[arg(long, value_name = "E", conflicts_with = "rays")]
+    pub target_error: Option<Fraction>,
+    /// Independent randomisations of the whole scene.
+    #[arg(long, value_name = "R", default_value_t = 16, value_parser = clap::value_parser!(u16).range(8..=4095))]
+    pub randomisations: u16,
+    /// Stop when more would not fit into this time: 90s, 5m, 1h.
+    #[arg(long, value_name = "T")]
+    pub max_time: Option<Span>,
+    /// Seed of the random streams.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// auto: whatever is most accurate; rays: hemisphere rays only (in this version both are the same).
+    #[arg(long, value_enum, default_value_t = Estimator::Auto)]
+    pub estimator: Estimator,
+}
+
+/// Estimators by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Estimator {
+    /// Whatever is most accurate.
+    Auto,
+    /// Hemisphere rays only.
+    Rays,
+}
+
+/// Which truth, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Truth {
+    /// The exact solution of the patch-constant system.
+    PatchSystem,
+    /// The true mean radiosity of each patch.
+    Continuous,
+}
+
+/// `etalon form-factors`
+#[derive(Debug, Args)]
+pub struct FormFactorsArgs {
+    /// Scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Rays.
+    #[command(flatten)]
+    pub rays: RayArgs,
+    /// .npz (SciPy CSR), .csv or .mtx.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Standard errors likewise.
+    #[arg(long, value_name = "FILE")]
+    pub std_err: Option<PathBuf>,
+}
+
+/// `etalon reference`
+#[derive(Debug, Args)]
+pub struct ReferenceArgs {
+    /// Scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Rays.
+    #[command(flatten)]
+    pub rays: RayArgs,
+    /// Directory of the reference.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Which truth.
+    #[arg(long, value_enum, default_value_t = Truth::PatchSystem)]
+    pub truth: Truth,
+}
+
+/// `etalon solve`
+#[derive(Debug, Args)]
+pub struct SolveArgs {
+    /// Scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// gather or hemicube, with parameters as hemicube:resolution=200,delta=exact.
+    #[arg(long, value_name = "M")]
+    pub method: String,
+    /// .csv, .json, .npy or .npz.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Re-use stored form factors: ours or anybody's.
+    #[arg(long, value_name = "FILE")]
+    pub form_factors: Option<PathBuf>,
+    /// Store the form factors that were computed.
+    #[arg(long, value_name = "FILE", conflicts_with = "form_factors")]
+    pub save_form_factors: Option<PathBuf>,
+    /// Rays per patch of ray-cast methods; parameters of --method win.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub rays: Option<u64>,
+    /// Seed of ray-cast methods.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Level of the values.
+    #[arg(long, value_enum, default_value_t = PerLevel::Patch)]
+    pub per: PerLevel,
+}
+
+/// What is compared with what.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Solution file or reference directory.
+    pub solution: PathBuf,
+    /// Reference directory, or another solution (then no rays: old against new).
+    #[arg(long, value_name = "DIR|SOLUTION")]
+    pub reference: PathBuf,
+    /// The state before the change, for the top-1 % metric.
+    #[arg(long, value_name = "DIR|SOLUTION")]
+    pub before: Option<PathBuf>,
+    /// Verify that the reference belongs to this scene; gives areas when comparing two solutions.
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Option<String>,
+    /// State of that scene: initial, the number of edits applied, or final.
+    #[arg(long, default_value = "final", value_name = "initial|K|final")]
+    pub state: StateChoice,
+    /// Longest patch edge of that scene, metres.
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
+    pub max_edge: Option<f64>,
+    /// Confidence of the intervals: two-sided, simultaneous over the limits given.
+    #[arg(long, default_value = "0.95", value_name = "C")]
+    pub confidence: Fraction,
+    /// Level of the values.
+    #[arg(long, value_enum, default_value_t = PerLevel::Patch)]
+    pub per: PerLevel,
+    /// Metrics on B - E instead of B.
+    #[arg(long)]
+    pub reflected: bool,
+    /// The truth asked for: has to be the one the reference holds.
+    #[arg(long, value_enum)]
+    pub truth: Option<Truth>,
+    /// Write the HTML report here.
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Write GitHub-flavoured Markdown here.
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+}
+
+/// `etalon check`
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// What is compared with what.
+    #[command(flatten)]
+    pub compare: CompareArgs,
+    /// Limit on the area-weighted luminance RMS (eq. 7): 0.05 or 5%.
+    #[arg(long, value_name = "X")]
+    pub max_rms: Option<Fraction>,
+    /// Limit on the top-1 % metric; needs --before.
+    #[arg(long, value_name = "Y")]
+    pub max_top1: Option<Fraction>,
+    /// Write JUnit XML here.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Exit code instead of 3 when inconclusive.
+    #[arg(long, value_enum, value_name = "pass|fail")]
+    pub on_inconclusive: Option<OnInconclusive>,
+    /// Accepted for scripts that share options with `reference`; a check casts no rays.
+    #[arg(long, value_name = "T", hide = true)]
+    pub max_time: Option<Span>,
+}
+
+/// What exit 3 becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OnInconclusive {
+    /// Exit 0.
+    Pass,
+    /// Exit 1.
+    Fail,
+}

@@ -1,0 +1,29 @@
+//! The scene file `etalon-scene/1` (TOML) and the meshes it names (OBJ with MTL).
+
+mod builtin;
+mod cameras;
+mod check;
+mod edits;
+mod error;
+mod folder;
+mod mesh;
+mod mtl;
+mod obj;
+mod photometry;
+mod polygon;
+mod raw;
+mod read;
+mod source;
+mod split;
+mod surfaces;
+
+pub use builtin::{builtin, builtin_names, builtin_text, open_scene};
+pub use error::{Refusal, SceneFileError};
+pub use read::{SCENE_FORMAT, read_scene};
+
+/// What the command line may change while a scene is read.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SceneOptions {
+    /// Takes the place of the file's `[discretisation] max_edge`, metres; surfaces with `patches` keep theirs.
+    pub max_edge_override: Option<f64>,
+}

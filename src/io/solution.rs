@@ -1,0 +1,385 @@
+//! Solution files: radiosities per patch and band as `.csv`, `.json`, `.npy` or `.npz`.
+
+use super::{FileError, npz};
+use crate::solution::Radiosity;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Name of the JSON format.
+const JSON_FORMAT: &str = "etalon-solution/1";
+
+/// Formats of a solution, chosen by the file's ending.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolutionFormat {
+    /// `patch,<band>,...` with optional `<band>_std_err`.
+    Csv,
+    /// `{"format": "etalon-solution/1", ...}`.
+    Json,
+    /// N x bands array.
+    Npy,
+    /// `radiosity`: N x bands, and `std_err` where known.
+    Npz,
+}
+
+impl SolutionFormat {
+    /// The format a file name asks for.
+    pub fn of(path: &Path) -> Result<Self, FileError> {
+        match path.extension().and_then(|e| e.to_str()) {
+            Some("csv") => Ok(Self::Csv),
+            Some("json") => Ok(Self::Json),
+            Some("npy") => Ok(Self::Npy),
+            Some("npz") => Ok(Self::Npz),
+            _ => Err(FileError::new(path, "has no ending that names a solution format")
+                .mend("use .csv, .json, .npy or .npz, or name a reference directory")),
+        }
+    }
+}
+
+/// What a solution belongs to; written beside the values where the format has room.
+#[derive(Debug, Clone, Copy)]
+pub struct BandNames<'a> {
+    /// Name of the scene.
+    pub scene: &'a str,
+    /// Hash of the scene at its state.
+    pub scene_hash: &'a str,
+    /// Band names.
+    pub bands: &'a [String],
+    /// Receivers that take part; the others get no row where the format has rows.
+    pub present: &'a [bool],
+}
+
+/// A solution as it stands in a file, not yet fitted to a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolutionFile {
+    path: std::path::PathBuf,
+    /// Band names, where the format has them.
+    pub bands: Option<Vec<String>>,
+    /// Hash of the scene it was computed for, if it says so.
+    pub scene_hash: Option<String>,
+    /// Values and standard errors by receiver number.
+    rows: BTreeMap<usize, Row>,
+    /// Bands per row.
+    width: usize,
+    /// True if every receiver has a place in the file (arrays), absent ones too.
+    dense: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    values: Vec<f64>,
+    std_err: Option<Vec<f64>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Json {
+    format: String,
+    #[serde(default)]
+    scene: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scene_hash: Option<String>,
+    bands: Vec<String>,
+    radiosity: Vec<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    std_err: Option<Vec<Vec<f64>>>,
+}
+
+/// A solution as the bytes of a file.
+pub fn write_solution(b: &Radiosity, names: BandNames, format: SolutionFormat) -> Vec<u8> {
+    match format {
+        SolutionFormat::Csv => write_csv(b, names),
+        SolutionFormat::Json => write_json(b, names),
+        SolutionFormat::Npy => npz::array(&[b.len() as u64, b.bands as u64], &b.values),
+        SolutionFormat::Npz => {
+            let shape = [b.len() as u64, b.bands as u64];
+            let mut members = npz::Members::default();
+            members.add("radiosity", npz::array(&shape, &b.values));
+            if let Some(e) = &b.std_err {
+                members.add("std_err", npz::array(&shape, e));
+            }
+            members.zip()
+        }
+    }
+}
+
+fn write_csv(b: &Radiosity, names: BandNames) -> Vec<u8> {
+    let mut out = format!("patch,{}", names.bands.join(","));
+    if b.std_err.is_some() {
+        names.bands.iter().for_each(|n| out += &format!(",{n}_std_err"));
+    }
+    out.push('\n');
+    for i in (0..b.len()).filter(|i| names.present[*i]) {
+        let _ = write!(out, "{i}");
+        for x in b.of(i).iter().chain(b.std_err_of(i).unwrap_or(&[])) {
+            let _ = write!(out, ",{x:?}");
+        }
+        out.push('\n');
+    }
+    out.into_bytes()
+}
+
+fn write_json(b: &Radiosity, names: BandNames) -> Vec<u8> {
+    let json = Json {
+        format: JSON_FORMAT.into(),
+        scene: names.scene.into(),
+        scene_hash: Some(names.scene_hash.into()),
+        bands: names.bands.to_vec(),
+        radiosity: (0..b.len()).map(|i| b.of(i).to_vec()).collect(),
+        std_err: b
+            .std_err
+            .as_ref()
+            .map(|_| (0..b.len()).filter_map(|i| b.std_err_of(i)).map(<[f64]>::to_vec).collect()),
+    };
+    let mut bytes = serde_json::to_vec(&json).expect("finite numbers serialise");
+    bytes.push(b'\n');
+    bytes
+}
+
+/// Reads a solution file; [`SolutionFile::fit`] fits it to a scene.
+pub fn read_solution(path: &Path) -> Result<SolutionFile, FileError> {
+    let format = SolutionFormat::of(path)?;
+    let bytes = std::fs::read(path).map_err(|e| FileError::system(path, "read", &e))?;
+    match format {
+        SolutionFormat::Csv => read_csv(path, &bytes),
+        SolutionFormat::Json => read_json(path, &bytes),
+        SolutionFormat::Npy => read_array(path, &bytes, None),
+        SolutionFormat::Npz => {
+            let members = npz::unzip(path, &bytes)?;
+            let values = members.get("radiosity").ok_or_else(|| {
+                FileError::new(path, "has no array \"radiosity\"").mend("save it with numpy.savez(..., radiosity=B)")
+            })?;
+            read_array(path, values, members.get("std_err").map(Vec::as_slice))
+        }
+    }
+}
+
+fn read_csv(path: &Path, bytes: &[u8]) -> Result<SolutionFile, FileError> {
+    let mut csv = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let header = csv.headers().map_err(|e| FileError::new(path, e.to_string()))?.clone();
+    let names: Vec<&str> = header.iter().collect();
+    if names.first() != Some(&"patch") || names.len() < 2 {
+        return Err(FileError::new(path, "does not begin with patch,<band>,...").at("line 1"));
+    }
+    let bands: Vec<String> = names[1..].iter().filter(|n| !n.ends_with("_std_err")).map(|n| n.to_string()).collect();
+    let column = |name: &str| names.iter().position(|n| *n == name);
+    let value_columns: Vec<usize> = bands.iter().filter_map(|b| column(b)).collect();
+    let error_columns: Vec<usize> = bands.iter().filter_map(|b| column(&format!("{b}_std_err"))).collect();
+    if names.len() != 1 + value_columns.len() + error_columns.len()
+        || value_columns.windows(2).any(|w| w[0] == w[1])
+        || !(error_columns.is_empty() || error_columns.len() == bands.len())
+    {
+        return Err(FileError::new(path, "has columns that are neither bands nor all of their _std_err").at("line 1"));
+    }
+    let mut rows = BTreeMap::new();
+    for record in csv.records() {
+        let record = record.map_err(|e| FileError::new(path, e.to_string()))?;
+        let line = format!("line {}", record.position().map_or(0, csv::Position::line));
+        let wrong = |problem: String| FileError::new(path, problem).at(line.clone());
+        if record.len() != names.len() {
+            return Err(wrong(format!("has {} fields, the header {}", record.len(), names.len())));
+        }
+        let patch: usize = record[0].parse().map_err(|_| wrong(format!("\"{}\" is not a patch number", &record[0])))?;
+        let read = |columns: &[usize]| -> Result<Vec<f64>, FileError> {
+            let number = |c: &usize| {
+                record[*c].parse::<f64>().map_err(|_| wrong(format!("\"{}\" is not a number", &record[*c])))
+            };
+            columns.iter().map(number).collect()
+        };
+        let std_err = if error_columns.is_empty() { None } else { Some(read(&error_columns)?) };
+        if rows.insert(patch, Row { values: read(&value_columns)?, std_err }).is_some() {
+            return Err(wrong(format!("patch {patch} stands twice")));
+        }
+    }
+    let width = bands.len();
+    let file = SolutionFile { path: path.into(), bands: Some(bands), scene_hash: None, rows, width, dense: false };
+    file.check_finite()
+}
+
+fn read_json(path: &Path, bytes: &[u8]) -> Result<SolutionFile, FileError> {
+    let json: Json = serde_json::from_slice(bytes).map_err(|e| {
+        FileError::new(path, format!("is not an {JSON_FORMAT} file: {e}")).at(format!("line {}", e.line()))
+    })?;
+    if json.format != JSON_FORMAT {
+        return Err(FileError::new(path, format!("has format \"{}\"", json.format))
+            .mend(format!("this version reads {JSON_FORMAT}")));
+    }
+    let width = json.bands.len();
+    let errors = json.std_err.unwrap_or_default();
+    let lengths_fit = errors.is_empty() || errors.len() == json.radiosity.len();
+    if let Some(i) = json.radiosity.iter().chain(&errors).position(|r| r.len() != width) {
+        return Err(FileError::new(path, format!("does not have {width} values")).at(format!("row {i}")));
+    }
+    if width == 0 || !lengths_fit {
+        return Err(FileError::new(path, "\"bands\", \"radiosity\" and \"std_err\" do not belong together"));
+    }
+    let mut errors = errors.into_iter();
+    let rows = json.radiosity.into_iter().enumerate().map(|(i, values)| (i, Row { values, std_err: errors.next() }));
+    let file = SolutionFile {
+        path: path.into(),
+        bands: Some(json.bands),
+        scene_hash: json.scene_hash,
+        rows: rows.collect(),
+        width,
+        dense: true,
+    };
+    file.check_finite()
+}
+
+fn read_array(path: &Path, values: &[u8], errors: Option<&[u8]>) -> Result<SolutionFile, FileError> {
+    let (shape, values) = npz::numbers(path, "radiosity", values)?;
+    let width = match shape[..] {
+        [_] => 1,
+        [_, bands] if bands > 0 => bands as usize,
+        _ => return Err(FileError::new(path, format!("has shape {shape:?}, not N x bands")).at("array \"radiosity\"")),
+    };
+    let errors = errors.map(|e| npz::numbers(path, "std_err", e)).transpose()?.map(|(_, e)| e);
+    if errors.as_ref().is_some_and(|e| e.len() != values.len()) {
+        return Err(FileError::new(path, "\"radiosity\" and \"std_err\" have different shapes"));
+    }
+    let row = |(i, v): (usize, &[f64])| {
+        let std_err = errors.as_ref().map(|e| e[i * width..(i + 1) * width].to_vec());
+        (i, Row { values: v.to_vec(), std_err })
+    };
+    let rows = values.chunks(width).enumerate().map(row).collect();
+    SolutionFile { path: path.into(), bands: None, scene_hash: None, rows, width, dense: true }.check_finite()
+}
+
+impl SolutionFile {
+    fn wrong(&self, problem: impl Into<String>) -> FileError {
+        FileError::new(&self.path, problem)
+    }
+
+    fn check_finite(self) -> Result<Self, FileError> {
+        for (i, row) in &self.rows {
+            if let Some(x) = row.values.iter().chain(row.std_err.iter().flatten()).find(|x| !x.is_finite()) {
+                return Err(self.wrong(format!("{x} is not a finite number")).at(format!("patch {i}")));
+            }
+        }
+        Ok(self)
+    }
+
+    /// Number of receivers the file speaks of.
+    pub fn len(&self) -> usize {
+        self.rows.keys().next_back().map_or(0, |k| k + 1)
+    }
+
+    /// True if the file holds no receiver.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Number of bands.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// The radiosities of a scene before its last change: receivers without a row did not exist and count as 0.
+    pub fn fit_before(&self, bands: &[String], n: usize) -> Result<Radiosity, FileError> {
+        let spoken_of: Vec<bool> = (0..n).map(|i| self.rows.contains_key(&i)).collect();
+        self.fit(bands, &spoken_of)
+    }
+
+    /// The radiosities of a scene with these bands and receivers: one value for each that is present.
+    pub fn fit(&self, bands: &[String], present: &[bool]) -> Result<Radiosity, FileError> {
+        let order = self.band_order(bands)?;
+        let n = present.len();
+        if self.dense && self.len() != n {
+            return Err(self
+                .wrong(format!("holds {} patches, but the scene has {n}", self.len()))
+                .mend("was it computed for another scene, state, --max-edge or --per?"));
+        }
+        if let Some(i) = self.rows.keys().find(|i| **i >= n) {
+            return Err(self.wrong(format!("the scene has only {n} patches")).at(format!("patch {i}")));
+        }
+        let mut values = vec![0.0; n * bands.len()];
+        let all_have_errors = self.rows.values().all(|r| r.std_err.is_some());
+        let mut errors = vec![0.0; n * bands.len()];
+        for i in (0..n).filter(|i| present[*i]) {
+            let row = self.rows.get(&i).ok_or_else(|| {
+                self.wrong("is missing").at(format!("patch {i}")).mend("every present patch needs a row")
+            })?;
+            for (c, from) in order.iter().enumerate() {
+                values[i * bands.len() + c] = row.values[*from];
+                errors[i * bands.len() + c] = row.std_err.as_ref().map_or(0.0, |e| e[*from]);
+            }
+        }
+        Ok(Radiosity { bands: bands.len(), values, std_err: all_have_errors.then_some(errors) })
+    }
+
+    /// Column of each of the scene's bands.
+    fn band_order(&self, bands: &[String]) -> Result<Vec<usize>, FileError> {
+        let mismatch = |found: String| {
+            self.wrong(format!("has bands {found}, but the scene has {}", bands.join(", ")))
+                .mend("name one column per band of the scene")
+        };
+        if self.width != bands.len() {
+            return Err(mismatch(self.bands.as_ref().map_or(format!("{} in number", self.width), |b| b.join(", "))));
+        }
+        let Some(names) = &self.bands else { return Ok((0..bands.len()).collect()) };
+        let find = |b: &String| names.iter().position(|n| n == b).ok_or_else(|| mismatch(names.join(", ")));
+        bands.iter().map(find).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bands() -> Vec<String> {
+        ["r", "g"].map(String::from).to_vec()
+    }
+
+    #[test]
+    fn every_format_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let b = Radiosity {
+            bands: 2,
+            values: vec![1.0, 0.1, 0.0, 0.0, 2.5, 1e-9],
+            std_err: Some(vec![0.1, 0.2, 0.0, 0.0, 0.0, 0.3]),
+        };
+        let bands = bands();
+        let present = [true, false, true];
+        let names = BandNames { scene: "s", scene_hash: "h", bands: &bands, present: &present };
+        for file in ["b.csv", "b.json", "b.npz", "b.npy"] {
+            let path = folder.path().join(file);
+            let format = SolutionFormat::of(&path).unwrap();
+            std::fs::write(&path, write_solution(&b, names, format)).unwrap();
+            let mut expected = b.clone();
+            if format == SolutionFormat::Npy {
+                expected.std_err = None;
+            }
+            assert_eq!(read_solution(&path).unwrap().fit(&bands, &present).unwrap(), expected, "{file}");
+        }
+    }
+
+    #[test]
+    fn bands_may_come_in_any_order_and_rows_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("b.csv");
+        std::fs::write(&path, "patch,g,r\n1, 4,3\n0,2,1\n").unwrap();
+        let b = read_solution(&path).unwrap().fit(&bands(), &[true, true]).unwrap();
+        assert_eq!((b.values, b.std_err), (vec![1.0, 2.0, 3.0, 4.0], None));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("b.csv");
+        for (text, expected) in [
+            ("patch,r,g\n0,1,2\n0,1,2\n", "line 3: patch 0 stands twice"),
+            ("patch,r,g\n0,1,nan\n1,1,1\n", "patch 0: NaN is not a finite number"),
+            ("patch,r,g\n0,1,x\n", "line 2: \"x\" is not a number"),
+            ("patch,r,g\n0,1\n", "line 2: has 2 fields"),
+            ("patch,r,g\n0,1,2\n", "patch 1: is missing"),
+            ("patch,r,g\n0,1,2\n1,1,2\n2,1,2\n", "patch 2: the scene has only 2"),
+            ("patch,r,b\n0,1,2\n1,1,2\n", "has bands r, b, but the scene has r, g"),
+            ("a,r\n", "line 1: does not begin with patch"),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let result = read_solution(&path).and_then(|s| s.fit(&bands(), &[true, true]));
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! What the gather method can be told: `rays=4096,randomisations=16`.
+
+use crate::estimate::Plan;
+use std::fmt;
+use std::str::FromStr;
+
+/// Settings of the ray-cast gather.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// Rays per patch over all randomisations.
+    pub rays: u64,
+    /// Independent randomisations.
+    pub randomisations: u16,
+}
+
+/// A setting that cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("gather: `{text}` is not a setting; settings are rays=N (at least 1) and randomisations=R (8 to 4096)")]
+pub struct ParamsError {
+    /// What was written.
+    pub text: String,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        let plan = Plan::default();
+        Self { rays: plan.rays, randomisations: plan.randomisations }
+    }
+}
+
+impl FromStr for Params {
+    type Err = ParamsError;
+
+    fn from_str(text: &str) -> Result<Self, ParamsError> {
+        let mut params = Self::default();
+        for part in text.split(',').map(str::trim).filter(|p| !p.is_empty()) {
+            let wrong = || ParamsError { text: part.into() };
+            match part.split_once('=').ok_or_else(wrong)? {
+                ("rays", n) => params.rays = n.parse().ok().filter(|n| *n > 0).ok_or_else(wrong)?,
+                ("randomisations", r) => {
+                    params.randomisations = r.parse().ok().filter(|r| (8..=4096).contains(r)).ok_or_else(wrong)?;
+                }
+                _ => return Err(wrong()),
+            }
+        }
+        Ok(params)
+    }
+}
+
+impl fmt::Display for Params {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "rays={},randomisations={}", self.rays, self.randomisations)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back_and_nonsense_refused() {
+        let p: Params = "rays=100,randomisations=32".parse().unwrap();
+        assert_eq!(p.to_string().parse::<Params>().unwrap(), p);
+        for bad in ["rays", "rays=0", "randomisations=7", "foo=1", "rays=-1"] {
+            assert!(bad.parse::<Params>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! What each pixel of one hemi-cube shows, kept for inspection.
+
+use super::delta::DeltaTable;
+use super::project::{FACES, Face};
+use super::raster::Item;
+use super::row::Hemicube;
+use super::solve::stand;
+use super::world::World;
+use super::{HemicubeError, Params};
+use crate::math::{DVec3, Frame};
+use crate::scene::Stage;
+
+/// The item buffer of the hemi-cube on one patch.
+#[derive(Debug, Clone)]
+pub struct ItemBuffer {
+    /// Pixels along an edge of the top.
+    pub resolution: usize,
+    /// Where the hemi-cube stands, metres.
+    pub eye: DVec3,
+    /// Its axes; z is the patch normal.
+    pub frame: Frame,
+    /// Items of the faces in the order of [`Face::ALL`], row by row, row 0 at the horizon (sides) or at y = -1.
+    pub faces: [Vec<Item>; FACES],
+}
+
+/// The item buffer of the hemi-cube on a patch; `None` if the patch takes no part or does not exist.
+pub fn item_buffer(stage: &Stage, patch: usize, params: &Params) -> Result<Option<ItemBuffer>, HemicubeError> {
+    let params = params.validated()?;
+    let Some((eye, frame)) = stage.patches.get(patch).and_then(|p| stand(p, &params)) else { return Ok(None) };
+    let (world, table) = (World::new(stage), DeltaTable::new(params.resolution, params.delta));
+    let mut cube = Hemicube::new(&world, &table);
+    cube.aim(eye, &frame);
+    let faces = Face::ALL.map(|face| {
+        cube.project(face);
+        cube.scan(face);
+        cube.items().to_vec()
+    });
+    Ok(Some(ItemBuffer { resolution: params.resolution as usize, eye, frame, faces }))
+}
+
+impl ItemBuffer {
+    /// Number of pixels that show an item, over all faces.
+    pub fn count(&self, item: Item) -> usize {
+        self.faces.iter().flatten().filter(|i| **i == item).count()
+    }
+
+    /// World direction (of no particular length) through the centre of a pixel.
+    pub fn direction(&self, face: Face, column: usize, row: usize) -> DVec3 {
+        let at = |k: usize, start: f64| start + (k as f64 + 0.5) * 2.0 / self.resolution as f64;
+        let v = at(row, if face == Face::Top { -1.0 } else { 0.0 });
+        self.frame.to_world(face.to_frame(DVec3::new(1.0, at(column, -1.0), v)))
+    }
+}

@@ -1,0 +1,150 @@
+//! One row of form factors: the hemi-cube of one patch, from aiming to the sum.
+
+use super::delta::DeltaTable;
+use super::project::{Face, Projection, Projector};
+use super::raster::{Item, Raster};
+use super::world::World;
+use crate::math::{DVec3, Frame};
+
+/// What is not a patch in a row, as form factors.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Lost {
+    /// What falls on backs.
+    pub backs: f64,
+    /// What escapes.
+    pub nothing: f64,
+}
+
+/// A hemi-cube with all the memory it needs, moved from patch to patch.
+///
+/// [`Hemicube::row`] does it all; the steps it takes, [`Hemicube::aim`] once and then [`Hemicube::project`],
+/// [`Hemicube::scan`] and [`Hemicube::sum`] for every face, are public so that they can be timed and looked into.
+#[derive(Debug)]
+pub struct Hemicube<'a> {
+    world: &'a World,
+    table: &'a DeltaTable,
+    projector: Projector,
+    projection: Projection,
+    raster: Raster,
+    tally: Tally,
+    deltas: Vec<f64>,
+}
+
+impl<'a> Hemicube<'a> {
+    /// A hemi-cube in a world, at the resolution of the table.
+    pub fn new(world: &'a World, table: &'a DeltaTable) -> Self {
+        Self {
+            world,
+            table,
+            projector: Projector::default(),
+            projection: Projection::default(),
+            raster: Raster::default(),
+            tally: Tally::new(world.patches),
+            deltas: vec![0.0; table.half()],
+        }
+    }
+
+    /// Form factors from a point with a frame (z the normal) to all patches: (patch, form factor) by patch
+    /// number, zeros left out, and what is lost [CG85 eq. 7].
+    pub fn row(&mut self, eye: DVec3, frame: &Frame) -> (Vec<(u32, f64)>, Lost) {
+        self.aim(eye, frame);
+        for face in Face::ALL {
+            self.project(face);
+            self.scan(face);
+            self.sum(face);
+        }
+        self.take()
+    }
+
+    /// Items of all pixels of a face, row by row, as last scanned.
+    pub fn items(&self) -> &[Item] {
+        self.raster.items()
+    }
+
+    /// Moves the hemi-cube.
+    pub fn aim(&mut self, eye: DVec3, frame: &Frame) {
+        self.projector.aim(self.world, eye, frame);
+    }
+
+    /// Clips and projects the environment onto a face. Returns the number of polygons on it.
+    pub fn project(&mut self, face: Face) -> usize {
+        self.projector.project(self.world, face, 2 * self.table.half(), &mut self.projection);
+        self.projection.polygons.len()
+    }
+
+    /// Draws what was projected.
+    pub fn scan(&mut self, face: Face) {
+        self.raster.clear(face.size(2 * self.table.half()));
+        self.raster.draw(&self.projection);
+    }
+
+    /// Adds the delta form factors of what was drawn, pixel row by pixel row.
+    pub fn sum(&mut self, face: Face) {
+        let (_, height) = face.size(2 * self.table.half());
+        for row in 0..height {
+            self.sum_row(face, row);
+        }
+    }
+
+    fn sum_row(&mut self, face: Face, row: usize) {
+        let half = self.table.half();
+        let outwards = match face {
+            // Rows and columns are mirrored about the axes.
+            Face::Top => self.table.top_row(if row < half { half - 1 - row } else { row - half }, &mut self.deltas),
+            Face::Side(_) => self.table.side_row(row),
+        };
+        let across = outwards.iter().rev().chain(outwards);
+        // Neighbouring pixels mostly show the same patch: sum the run, then add it.
+        let (mut run, mut sum) = (Item::NOTHING, 0.0);
+        for (item, delta) in self.raster.row(row).iter().zip(across) {
+            if *item != run {
+                self.tally.add(run, sum);
+                (run, sum) = (*item, 0.0);
+            }
+            sum += delta;
+        }
+        self.tally.add(run, sum);
+    }
+
+    /// The finished row; the sums start again from zero.
+    pub fn take(&mut self) -> (Vec<(u32, f64)>, Lost) {
+        self.tally.take()
+    }
+}
+
+/// Form factors of a row while they are summed.
+#[derive(Debug)]
+struct Tally {
+    /// One value per patch; zero between rows.
+    sums: Vec<f64>,
+    /// Patches with a value.
+    touched: Vec<u32>,
+    lost: Lost,
+}
+
+impl Tally {
+    fn new(patches: usize) -> Self {
+        Self { sums: vec![0.0; patches], touched: Vec::new(), lost: Lost::default() }
+    }
+
+    fn add(&mut self, item: Item, amount: f64) {
+        match item.as_patch() {
+            Some(j) => {
+                let sum = &mut self.sums[j as usize];
+                if *sum == 0.0 {
+                    self.touched.push(j);
+                }
+                *sum += amount;
+            }
+            None if item == Item::BACK => self.lost.backs += amount,
+            None => self.lost.nothing += amount,
+        }
+    }
+
+    fn take(&mut self) -> (Vec<(u32, f64)>, Lost) {
+        self.touched.sort_unstable();
+        let sums = &mut self.sums;
+        let row = self.touched.drain(..).map(|j| (j, std::mem::take(&mut sums[j as usize]))).collect();
+        (row, std::mem::take(&mut self.lost))
+    }
+}

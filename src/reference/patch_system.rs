@@ -1,0 +1,264 @@
+//! Level (a): the patch-constant system, solved with ray-cast form factors.
+
+use super::ReferenceError;
+use super::self_check::{self, Evidence};
+use super::transport::LeaveOneOut;
+use crate::estimate::{Casting, Entry, HitCounts, Plan, cast, element_emitters, patch_emitters};
+use crate::raycast::Tracer;
+use crate::sampling::{Role, Stream};
+use crate::scene::Stage;
+use crate::solution::{FormFactors, Provenance, Replicates, SelfCheck, TruthLevel};
+use crate::solver::{System, krylov};
+use std::cell::RefCell;
+
+/// Relative residual to which patch systems are solved.
+const RESIDUAL: f64 = 1e-12;
+
+/// What a reference may spend.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// Rays, randomisations, target, time.
+    pub plan: Plan,
+    /// Seed of the judge's streams.
+    pub seed: u64,
+}
+
+/// What a long computation tells its caller.
+pub trait Progress: Sync {
+    /// A stage of the work begins; `total` steps, `None` if nobody knows.
+    fn begin(&self, what: &str, total: Option<u64>);
+    /// So many more steps are done.
+    fn advance(&self, steps: u64);
+}
+
+/// A finished reference.
+#[derive(Debug)]
+pub struct Reference {
+    /// Replicate radiosities of the patches.
+    pub patches: Replicates,
+    /// Replicate radiosities of the elements, where patches have more than one.
+    pub elements: Option<Replicates>,
+    /// Mean form factors with standard errors.
+    pub form_factors: FormFactors,
+    /// How it was computed.
+    pub provenance: Provenance,
+    /// What it found about itself.
+    pub self_check: SelfCheck,
+    /// Relative error in the norm of eq. 7 after each wave of rays.
+    pub waves: Vec<(u64, f64)>,
+    /// True if a target error was asked for and not reached.
+    pub missed_target: bool,
+}
+
+/// Emission and reflectance of every patch, row-major.
+struct Inputs {
+    emission: Vec<f64>,
+    reflectance: Vec<f64>,
+    bands: usize,
+}
+
+impl Inputs {
+    fn of(stage: &Stage) -> Self {
+        let column = |get: &dyn Fn(usize) -> Vec<f64>| -> Vec<f64> {
+            let value = |i: usize| if stage.patches[i].is_present() { get(i) } else { vec![0.0; stage.band_count()] };
+            (0..stage.patch_count()).flat_map(value).collect()
+        };
+        Self {
+            emission: column(&|i| stage.emission(i).to_vec()),
+            reflectance: column(&|i| stage.reflectance(i).to_vec()),
+            bands: stage.band_count(),
+        }
+    }
+
+    fn system(&self) -> System<'_> {
+        System { emission: &self.emission, reflectance: &self.reflectance, bands: self.bands }
+    }
+}
+
+/// Casts the judge's rays and solves the patch system: R replicates, debiased by leaving one out.
+///
+/// `tracer` casts with the judge's kernel; `evidence` brings what the self-check needs from outside.
+pub fn compute(
+    tracer: &Tracer,
+    options: &Options,
+    evidence: &Evidence,
+    progress: &dyn Progress,
+) -> Result<Reference, ReferenceError> {
+    let stage = tracer.stage();
+    check_size(stage, &options.plan)?;
+    let inputs = Inputs::of(stage);
+    let stream = Stream::new(Role::Judge, options.seed);
+    let emitters = patch_emitters(stage);
+    begin_casting(progress, "casting rays", &options.plan, emitters.iter().flatten().count());
+
+    // The radiosities of the last wave are kept: where the plan stops, they are the answer.
+    let solved: RefCell<Option<Result<Solved, ReferenceError>>> = RefCell::new(None);
+    let error = |counts: &HitCounts| {
+        let result = solve(stage, &inputs, counts);
+        let relative = result.as_ref().map_or(f64::NAN, |s| relative_noise(stage, &s.replicates));
+        *solved.borrow_mut() = Some(result);
+        relative
+    };
+    let casting = cast(tracer, &emitters, stream, &options.plan, &error, &|rays| progress.advance(rays));
+    let solved = solved.into_inner().expect("every plan has a wave")?;
+    let elements = if stage.has_elements() {
+        Some(gather_elements(tracer, &inputs, &solved.replicates, &casting, stream, progress))
+    } else {
+        None
+    };
+    let counts = &casting.counts;
+    let self_check = self_check::run(stage, counts, &solved.mean, solved.residual, tracer.is_enclosure(), evidence);
+    Ok(Reference {
+        form_factors: counts.form_factors(),
+        provenance: provenance(tracer, options, &casting),
+        self_check,
+        patches: solved.replicates,
+        elements,
+        missed_target: casting.reached.missed_target,
+        waves: casting.waves,
+    })
+}
+
+/// Refuses scenes and plans that are larger than the hit counters.
+pub fn check_size(stage: &Stage, plan: &Plan) -> Result<(), ReferenceError> {
+    let too_large = |what, got: u64, most: u64, mend| Err(ReferenceError::TooLarge { what, got, most, mend });
+    if stage.patch_count() >= Entry::MAX_PATCHES {
+        return too_large(
+            "the number of patches",
+            stage.patch_count() as u64,
+            Entry::MAX_PATCHES as u64 - 1,
+            "use a coarser mesh",
+        );
+    }
+    if plan.target_error.is_none() && plan.rays_per_randomisation() > Entry::MAX_COUNT {
+        return too_large(
+            "the number of rays per patch and randomisation",
+            plan.rays_per_randomisation(),
+            Entry::MAX_COUNT,
+            "ask for fewer --rays or more --randomisations",
+        );
+    }
+    Ok(())
+}
+
+fn begin_casting(progress: &dyn Progress, what: &str, plan: &Plan, emitters: usize) {
+    let rays = plan.rays_per_randomisation() * u64::from(plan.randomisations) * emitters as u64;
+    progress.begin(what, plan.target_error.is_none().then_some(rays));
+}
+
+/// Radiosities that belong to one state of the counts.
+struct Solved {
+    /// Solution of the mean matrix: N x bands.
+    mean: Vec<f64>,
+    /// Pseudo-values: R independent radiosities free of the bias that solving with noisy factors brings.
+    replicates: Replicates,
+    /// Worst relative residual.
+    residual: f64,
+}
+
+/// Solves with the mean matrix and with every matrix that leaves one randomisation out.
+///
+/// The solution depends on F in a curved way, so noise in F shifts its mean by a term of order 1/R. The
+/// jackknife pseudo-values `R B - (R - 1) B_without_r` cancel that term and are the replicates.
+fn solve(stage: &Stage, inputs: &Inputs, counts: &HitCounts) -> Result<Solved, ReferenceError> {
+    let areas = stage.areas();
+    let r = counts.randomisations;
+    let params = krylov::Params {
+        tolerance: RESIDUAL,
+        norm: crate::solver::Norm { weights: Some(&areas) },
+        ..krylov::Params::default()
+    };
+    let (mean, info) = krylov::solve(&inputs.system(), &counts.form_factors(), None, &params, |_, _| {})?;
+    let emission = counts.repeated(&inputs.emission, inputs.bands);
+    let reflectance = counts.repeated(&inputs.reflectance, inputs.bands);
+    let system = System { emission: &emission, reflectance: &reflectance, bands: inputs.bands * usize::from(r) };
+    let guess = counts.repeated(&mean, inputs.bands);
+    let (left_out, more) = krylov::solve(&system, &LeaveOneOut { counts }, Some(&guess), &params, |_, _| {})?;
+    let residual = info.residual.iter().chain(&more.residual).copied().fold(0.0, f64::max);
+    let replicates = pseudo_values(&mean, &left_out, inputs.bands, r);
+    Ok(Solved { mean, replicates, residual })
+}
+
+fn pseudo_values(mean: &[f64], left_out: &[f64], bands: usize, r: u16) -> Replicates {
+    let (count, width) = (f64::from(r), usize::from(r) * bands);
+    let replicate = |r: usize| -> Vec<f64> {
+        let pick = |(k, b): (usize, &f64)| {
+            let without = left_out[k / bands * width + r * bands + k % bands];
+            count * b - (count - 1.0) * without
+        };
+        mean.iter().enumerate().map(pick).collect()
+    };
+    Replicates { bands, replicates: (0..usize::from(r)).map(replicate).collect() }
+}
+
+/// sqrt(sum A se^2) / sqrt(sum A Y^2), luminances.
+fn relative_noise(stage: &Stage, replicates: &Replicates) -> f64 {
+    let r = replicates.count() as f64;
+    let (mut noise, mut signal) = (0.0, 0.0);
+    for (i, patch) in stage.patches.iter().enumerate() {
+        let span = i * replicates.bands..(i + 1) * replicates.bands;
+        let y: Vec<f64> = replicates.replicates.iter().map(|v| stage.photometry.luminance(&v[span.clone()])).collect();
+        let mean = y.iter().sum::<f64>() / r;
+        noise += patch.area * y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (r * (r - 1.0));
+        signal += patch.area * mean * mean;
+    }
+    if signal == 0.0 { 0.0 } else { (noise / signal).sqrt() }
+}
+
+/// Element values: one gather per element and randomisation from the patch replicate of the same number.
+fn gather_elements(
+    tracer: &Tracer,
+    inputs: &Inputs,
+    patches: &Replicates,
+    casting: &Casting,
+    stream: Stream,
+    progress: &dyn Progress,
+) -> Replicates {
+    let stage = tracer.stage();
+    let emitters = element_emitters(stage);
+    let plan = Plan {
+        rays: casting.reached.rays_per_patch,
+        randomisations: casting.counts.randomisations,
+        target_error: None,
+        max_time: None,
+    };
+    begin_casting(progress, "casting rays of elements", &plan, emitters.iter().flatten().count());
+    let elements = cast(tracer, &emitters, stream, &plan, &|_| 0.0, &|rays| progress.advance(rays));
+    let bands = inputs.bands;
+    let width = patches.count() * bands;
+    let mut sources = vec![0.0; stage.patch_count() * width];
+    for (r, values) in patches.replicates.iter().enumerate() {
+        for (k, b) in values.iter().enumerate() {
+            sources[k / bands * width + r * bands + k % bands] = *b;
+        }
+    }
+    let gathered = elements.counts.apply_each(&sources, bands);
+    let value = |r: usize, e: usize, c: usize| {
+        let i = stage.elements[e].patch as usize * bands + c;
+        let present = emitters[e].is_some();
+        if present { inputs.emission[i] + inputs.reflectance[i] * gathered[e * width + r * bands + c] } else { 0.0 }
+    };
+    let replicate = |r: usize| {
+        (0..emitters.len()).flat_map(|e| (0..bands).map(move |c| (e, c))).map(|(e, c)| value(r, e, c)).collect()
+    };
+    Replicates { bands, replicates: (0..patches.count()).map(replicate).collect() }
+}
+
+fn provenance(tracer: &Tracer, options: &Options, casting: &Casting) -> Provenance {
+    let (kernel, tally) = (tracer.kernel(), casting.counts.tally);
+    Provenance {
+        version: env!("CARGO_PKG_VERSION").into(),
+        truth: TruthLevel::PatchSystem,
+        seed: options.seed,
+        rays_per_patch: casting.reached.rays_per_patch,
+        randomisations: options.plan.randomisations,
+        rays: tally.rays,
+        escapes: tally.escapes,
+        back_hits: tally.back_hits,
+        kernel: kernel.name.clone(),
+        kernel_version: kernel.version.clone(),
+        instruction_set: kernel.instruction_set.clone(),
+        enclosure: tracer.is_enclosure(),
+        relative_error: casting.reached.relative_error,
+    }
+}
