@@ -10,6 +10,8 @@ use crate::view::Camera;
 const SIZE: [u32; 2] = [640, 480];
 /// Size of the trial pictures that candidates are judged by.
 const TRIAL: [u32; 2] = [48, 36];
+/// Share of the picture that a scene seen from outside fills at most, along each axis.
+const FILLED: f64 = 0.94;
 /// Vertical field of view from outside and from inside, degrees.
 const FOV: [f64; 2] = [38.0, 72.0];
 
@@ -30,7 +32,7 @@ pub fn fit_camera(tracer: &Tracer) -> Camera {
             best = Some((score, camera));
         }
     }
-    let camera = best.map_or_else(|| from_outside(DVec3::ZERO, 1.0, DVec3::new(1.0, -1.0, 1.0)), |(_, c)| c);
+    let camera = best.map_or_else(|| from_outside(-DVec3::ONE, DVec3::ONE, DVec3::new(1.0, -1.0, 1.0)), |(_, c)| c);
     Camera { size: SIZE, ..camera }
 }
 
@@ -40,10 +42,9 @@ fn candidates(stage: &Stage) -> Vec<Camera> {
         return Vec::new();
     }
     let (centre, size) = ((low + high) * 0.5, high - low);
-    let radius = (0.5 * size.length()).max(1e-6);
-    let mut all: Vec<Camera> = outside_directions().map(|d| from_outside(centre, radius, d)).collect();
+    let mut all: Vec<Camera> = outside_directions().map(|d| from_outside(low, high, d)).collect();
     // A flat scene has no inside.
-    if size.min_element() > 1e-3 * radius {
+    if size.min_element() > 1e-3 * size.length() {
         all.extend(inside_corners().map(|c| from_inside(centre, size, c)));
     }
     all
@@ -64,9 +65,21 @@ fn inside_corners() -> impl Iterator<Item = DVec3> {
     [0.2, 0.9, -0.9].into_iter().flat_map(move |z| sides.map(|(x, y)| DVec3::new(0.9 * x, 0.9 * y, z)))
 }
 
-fn from_outside(centre: DVec3, radius: f64, towards_eye: DVec3) -> Camera {
-    let distance = 1.04 * radius / (0.5 * FOV[0].to_radians()).sin();
-    fitted(centre + towards_eye.normalize() * distance, centre, FOV[0])
+/// Looks at the middle of the box from `towards_eye`, as near as the picture still holds all eight corners.
+fn from_outside(low: DVec3, high: DVec3, towards_eye: DVec3) -> Camera {
+    let centre = (low + high) * 0.5;
+    let forward = -towards_eye.normalize();
+    let right = forward.cross(DVec3::Z).normalize();
+    let up = right.cross(forward);
+    let half = (0.5 * FOV[0].to_radians()).tan() * FILLED;
+    let wide = half * f64::from(SIZE[0]) / f64::from(SIZE[1]);
+    let distance = (0..8).map(|k| {
+        let pick = |axis: usize| if k >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        let corner = DVec3::new(pick(0), pick(1), pick(2)) - centre;
+        (corner.dot(up).abs() / half).max(corner.dot(right).abs() / wide) - corner.dot(forward)
+    });
+    let distance = distance.fold(0.0, f64::max).max(1e-6);
+    fitted(centre - forward * distance, centre, FOV[0])
 }
 
 fn from_inside(centre: DVec3, size: DVec3, corner: DVec3) -> Camera {
@@ -168,7 +181,10 @@ mod tests {
             let camera = fit_camera(&tracer(&stage));
             assert_eq!(camera.eye.z > 0.0, !turned, "{:?}", camera.eye);
             let seen = Visibility::cast(&tracer(&stage), &camera, 1);
-            assert_eq!(seen.coverage(0), [], "there is a margin");
+            let [w, h] = SIZE.map(|s| s as usize);
+            let rim = (0..w).flat_map(|x| [x, x + (h - 1) * w]).chain((0..h).flat_map(|y| [y * w, y * w + w - 1]));
+            assert!(rim.into_iter().all(|p| seen.coverage(p).is_empty()), "there is a margin");
+            assert!(seen.shares()[0] > 0.2, "and not much of one: {:?}", seen.shares());
             assert!(seen.middles(&[0, 1, 2, 3]).iter().all(Option::is_some));
         }
     }

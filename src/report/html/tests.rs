@@ -128,24 +128,3 @@ fn only_the_marked_block_depends_on_the_clock() {
     assert_ne!(fast[0], slow[0]);
     assert_eq!(apart(&fast), apart(&slow));
 }
-
-#[test]
-#[ignore]
-fn write_page() {
-    let stage = {
-        let mut s = room();
-        s.cameras[0].size = [640, 480];
-        s
-    };
-    let views = views(&tracer(&stage));
-    for (name, v) in [("pass", Verdict::Pass), ("fail", Verdict::Fail), ("open", Verdict::Inconclusive)] {
-        let mut r = with_verdict(v);
-        r.stage = stage.clone();
-        if name == "fail" {
-            r.comparison.emitter_share = 0.987;
-        }
-        let timing = [Phase { name: "Rays".into(), seconds: 1.25 }, Phase { name: "Solve".into(), seconds: 0.25 }];
-        let files = HtmlReport.export(&r, &Extras { views: &views, timing: &timing }).expect("report");
-        crate::report::save(std::path::Path::new(&format!("/tmp/report-look/{name}")), &files).expect("save");
-    }
-}
