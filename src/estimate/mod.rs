@@ -9,4 +9,4 @@ mod rows;
 pub use counts::{Entry, HitCounts};
 pub use emitter::{Emitter, element_emitters, patch_emitters};
 pub use plan::{Plan, Reached};
-pub use rows::{Casting, cast, sample_batches};
+pub use rows::{Casting, cast, row_batches, sample_batches};

@@ -100,6 +100,21 @@ pub fn sample_batches(emitters: &[Option<Emitter>], stream: Stream, rays: usize)
     active.iter().step_by(step).map(batch).collect()
 }
 
+/// All rays that [`cast`] traces for these emitters under a plan of one wave, in its order: for benchmarks.
+pub fn row_batches(emitters: &[Option<Emitter>], stream: Stream, plan: &Plan) -> Vec<RayBatch> {
+    let net = Net::new(stream.child(0), plan.randomisations, 0, plan.rays_per_randomisation());
+    let row = |e: &Emitter| {
+        let shift = stream.child(1).child(e.key);
+        let batch = |first: usize| {
+            let mut rays = RayBatch::zeroed(BATCH.min(net.len() - first));
+            fill(&mut rays, &net, first, e, shift);
+            rays
+        };
+        (0..net.len()).step_by(BATCH).map(batch).collect::<Vec<_>>()
+    };
+    emitters.iter().flatten().flat_map(row).collect()
+}
+
 /// Makes the rays of an emitter from samples `first ..` of a net.
 fn fill(rays: &mut RayBatch, net: &Net, first: usize, emitter: &Emitter, shift: Stream) {
     let frame = emitter.frame.turned(shift.unit(0) * std::f64::consts::TAU);
