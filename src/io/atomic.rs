@@ -60,7 +60,7 @@ pub fn write(target: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 /// Devices and pipes are written to directly: there is nothing to keep whole, and a rename would replace them.
 ///
 /// # Errors
-/// As [`write`]; errors of `fill` come back as [`WriteError::Failed`].
+/// As [`write()`]; errors of `fill` come back as [`WriteError::Failed`].
 pub fn write_with(target: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
     // A link stays a link: what it points to is replaced.
     let real = fs::canonicalize(target).unwrap_or_else(|_| target.to_path_buf());
@@ -76,7 +76,7 @@ pub fn write_with(target: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result
 /// Makes a folder and those above it.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn create_folder(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(|e| match e.kind() {
         io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {

@@ -9,7 +9,7 @@ use std::str::FromStr;
 pub enum Method {
     /// Ray-cast form factors, solved exactly.
     Gather(gather::Params),
-    /// Hemi-cube form factors, Gauss-Seidel [CG85].
+    /// Hemi-cube form factors, Gauss-Seidel, as in 1985.
     Hemicube(hemicube::Params),
 }
 
