@@ -1,6 +1,6 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
-use super::values::{Fraction, PerLevel, StateChoice, Span};
+use super::values::{Fraction, PerLevel, Span, StateChoice};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -126,7 +126,7 @@ pub struct SceneArgs {
     #[arg(long, default_value = "final", value_name = "initial|K|final")]
     pub state: StateChoice,
     /// Longest patch edge, metres; overrides the file's max_edge.
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub max_edge: Option<f64>,
 }
 
@@ -252,7 +252,7 @@ pub struct CompareArgs {
     #[arg(long, default_value = "final", value_name = "initial|K|final")]
     pub state: StateChoice,
     /// Longest patch edge of that scene, metres.
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub max_edge: Option<f64>,
     /// Confidence of the intervals: two-sided, simultaneous over the limits given.
     #[arg(long, default_value = "0.95", value_name = "C")]

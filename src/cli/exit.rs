@@ -1,11 +1,16 @@
 //! Exit codes, and the one error that ends a command.
 
 use crate::io::FileError;
-use crate::methods::gather;
+use crate::io::atomic::WriteError;
+use crate::io::scene::SceneFileError;
+use crate::methods::MethodError;
 use crate::metrics::MetricsError;
 use crate::raycast::KernelError;
 use crate::reference::ReferenceError;
+use crate::report::ReportError;
+use crate::scene::SceneError;
 use crate::solver::SolverError;
+use crate::study::JudgeError;
 use serde_json::{Value, json};
 
 /// Done; every limit met.
@@ -78,4 +83,19 @@ macro_rules! bad_input {
     )* };
 }
 
-bad_input!(KernelError, SolverError, ReferenceError, MetricsError, gather::ParamsError);
+bad_input!(KernelError, SolverError, ReferenceError, MetricsError, MethodError, SceneError, JudgeError, ReportError);
+
+impl From<SceneFileError> for Failure {
+    fn from(e: SceneFileError) -> Self {
+        let place = e.place();
+        let message = e.to_string();
+        let drawn = Some(format!("{:?}", miette::Report::new(e)));
+        Self { drawn, ..Self::input(message).at(place) }
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(e: WriteError) -> Self {
+        Self::input(e.to_string())
+    }
+}

@@ -62,9 +62,10 @@ impl FromStr for StateChoice {
         match text {
             "initial" => Ok(Self::Initial),
             "final" => Ok(Self::Final),
-            k => k.parse().map(Self::After).map_err(|_| {
-                format!("\"{k}\" is not a state: write initial, final, or the number of edits applied")
-            }),
+            k => k
+                .parse()
+                .map(Self::After)
+                .map_err(|_| format!("\"{k}\" is not a state: write initial, final, or the number of edits applied")),
         }
     }
 }

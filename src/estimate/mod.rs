@@ -9,4 +9,4 @@ mod rows;
 pub use counts::{Entry, HitCounts};
 pub use emitter::{Emitter, element_emitters, patch_emitters};
 pub use plan::{Plan, Reached};
-pub use rows::{Casting, cast};
+pub use rows::{Casting, cast, sample_batches};

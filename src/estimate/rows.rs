@@ -86,6 +86,28 @@ fn cast_block(
     counts.rays += block;
 }
 
+/// About `rays` of the rays that [`cast`] begins with, spread over all emitters: for a second look at them.
+pub fn sample_batches(emitters: &[Option<Emitter>], stream: Stream, rays: usize) -> Vec<RayBatch> {
+    let active: Vec<&Emitter> = emitters.iter().flatten().collect();
+    let each = (rays / active.len().max(1)).clamp(1, BATCH);
+    let step = (active.len() / rays.max(1)).max(1);
+    let net = Net::new(stream.child(0), 1, 0, each.next_power_of_two() as u64);
+    let batch = |e: &&Emitter| {
+        let mut rays = RayBatch::zeroed(each);
+        fill(&mut rays, &net, 0, e, stream.child(1).child(e.key));
+        rays
+    };
+    active.iter().step_by(step).map(batch).collect()
+}
+
+/// Makes the rays of an emitter from samples `first ..` of a net.
+fn fill(rays: &mut RayBatch, net: &Net, first: usize, emitter: &Emitter, shift: Stream) {
+    let frame = emitter.frame.turned(shift.unit(0) * std::f64::consts::TAU);
+    rays.from = emitter.facet;
+    make_positions(rays, net, first, &emitter.map, [(shift.at(1) >> 33) as i32, (shift.at(2) >> 33) as i32]);
+    make_directions(rays, net, first, &frame);
+}
+
 /// Working memory of one thread.
 struct Worker {
     randomisations: usize,
@@ -113,15 +135,11 @@ impl Worker {
 
     /// All rays of one row.
     fn row(&mut self, tracer: &Tracer, net: &Net, emitter: &Emitter, shift: Stream) -> (Vec<Entry>, Tally) {
-        let frame = emitter.frame.turned(shift.unit(0) * std::f64::consts::TAU);
-        let shift = [(shift.at(1) >> 33) as i32, (shift.at(2) >> 33) as i32];
         let mut tally = Tally::default();
-        self.rays.from = emitter.facet;
         for first in (0..net.len()).step_by(BATCH) {
             let n = BATCH.min(net.len() - first);
             self.rays.resize(n);
-            make_positions(&mut self.rays, net, first, &emitter.map, shift);
-            make_directions(&mut self.rays, net, first, &frame);
+            fill(&mut self.rays, net, first, emitter, shift);
             tally += tracer.trace(&self.rays, &mut self.landings[..n], &mut self.scratch);
             self.count(&net.randomisation[first..first + n]);
         }

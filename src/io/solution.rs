@@ -274,7 +274,13 @@ impl SolutionFile {
         self.width
     }
 
-    /// The radiosities of a scene with these bands and receivers: one value for each that is present, no other.
+    /// The radiosities of a scene before its last change: receivers without a row did not exist and count as 0.
+    pub fn fit_before(&self, bands: &[String], n: usize) -> Result<Radiosity, FileError> {
+        let spoken_of: Vec<bool> = (0..n).map(|i| self.rows.contains_key(&i)).collect();
+        self.fit(bands, &spoken_of)
+    }
+
+    /// The radiosities of a scene with these bands and receivers: one value for each that is present.
     pub fn fit(&self, bands: &[String], present: &[bool]) -> Result<Radiosity, FileError> {
         let order = self.band_order(bands)?;
         let n = present.len();

@@ -17,6 +17,7 @@ const FORMAT: &str = "etalon-reference/1";
 const MANIFEST: &str = "reference.json";
 const SCENE: &str = "scene.json";
 const REPLICATES: &str = "replicates.npz";
+const MEANS: &str = "reference.csv";
 const TIMING: &str = "timing.json";
 
 /// All that a reference directory holds.
@@ -65,7 +66,7 @@ impl StoredReference {
         let mut files = vec![
             (SCENE.to_string(), json(&self.stage)),
             (REPLICATES.to_string(), self.replicates()),
-            ("reference.csv".to_string(), self.means()),
+            (MEANS.to_string(), self.means()),
         ];
         let manifest = Manifest {
             format: FORMAT.into(),
@@ -112,6 +113,7 @@ impl StoredReference {
         let reader = Reader { folder };
         let manifest = reader.manifest()?;
         let load = |name: &str| reader.verified(name, &manifest);
+        load(MEANS)?;
         let stage: Stage = reader.parse(SCENE, &load(SCENE)?)?;
         let path = folder.join(REPLICATES);
         let members = npz::unzip(&path, &load(REPLICATES)?)?;

@@ -17,7 +17,10 @@ pub fn area(polygon: &[DVec3]) -> f64 {
 
 /// Unit normal on the front side; zero vector for a degenerate polygon.
 pub fn unit_normal(polygon: &[DVec3]) -> DVec3 {
-    area_vector(polygon).normalize_or_zero()
+    let total = area_vector(polygon);
+    let length = total.length();
+    // Divided, not multiplied by the reciprocal: normals along an axis come out exact.
+    if length > 0.0 { total / length } else { DVec3::ZERO }
 }
 
 /// Centre of area. For a degenerate polygon, the mean of its vertices.

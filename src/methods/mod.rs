@@ -3,5 +3,7 @@
 pub mod gather;
 pub mod hemicube;
 mod info;
+mod method;
 
 pub use info::{MethodInfo, PatchVectors, RowSums};
+pub use method::{Method, MethodError};

@@ -15,6 +15,9 @@ pub(super) fn inputs(
     if !(confidence > 0.0 && confidence < 1.0) {
         return Err(MetricsError::Confidence { confidence });
     }
+    if judged.bands.is_empty() {
+        return Err(MetricsError::Shape { what: "the judged scene", unit: "bands", got: 0, expected: 1 });
+    }
     same("the list of luminance weights", "bands", judged.weights.len(), judged.bands.len())?;
     same("the list of surfaces", "patches", judged.surfaces.len(), judged.areas.len())?;
     values("the emission", judged.bands.len(), judged.emission, judged)?;

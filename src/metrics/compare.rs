@@ -16,9 +16,6 @@ pub(super) const MIN_REPLICATES: usize = 4;
 /// How many of the worst patches are named.
 const WORST: usize = 10;
 
-/// A reflected luminance below this share of the whole (in the norm of eq. 7) is the rounding of B - E.
-const ROUNDING: f64 = 1e-12;
-
 /// Compares a solution with the truth; all intervals two-sided at `confidence`.
 ///
 /// `before` is the state before the change, for the top 1 %: a reference, or the old solver's solution.
@@ -43,7 +40,7 @@ pub fn compare(
     let main = if reflected { &beyond_emission } else { &whole };
     let what = if reflected { "the reflected luminance" } else { "the luminance" };
     let dark = MetricsError::DarkReference { what };
-    let rms_reflected = beyond_emission.rms().estimate().filter(|_| beyond_emission.is_more_than_rounding_of(&whole));
+    let rms_reflected = beyond_emission.rms().estimate();
     let rms = if reflected { rms_reflected } else { whole.rms().estimate() }.ok_or(dark.clone())?;
     let top1 = before.and_then(|before| {
         let before = Quantity::luminance(judged, false).of_truth(before);
@@ -72,9 +69,7 @@ fn per_band(
     reflected: bool,
 ) -> Vec<(String, Option<Estimate>)> {
     let band = |c: usize| {
-        let view = View::of(solution, reference, judged, Quantity::band(judged, c, reflected), confidence);
-        let whole = View::of(solution, reference, judged, Quantity::band(judged, c, false), confidence);
-        view.rms().estimate().filter(|_| !reflected || view.is_more_than_rounding_of(&whole))
+        View::of(solution, reference, judged, Quantity::band(judged, c, reflected), confidence).rms().estimate()
     };
     judged.bands.iter().enumerate().map(|(c, name)| (name.clone(), band(c))).collect()
 }
@@ -119,10 +114,6 @@ impl<'a> View<'a> {
 
     fn mean_norm_squared(&self) -> f64 {
         self.norm_squared(|i| self.mean[i])
-    }
-
-    fn is_more_than_rounding_of(&self, whole: &View) -> bool {
-        self.mean_norm_squared() > ROUNDING * ROUNDING * whole.mean_norm_squared()
     }
 
     /// Standard error of the reference at a patch.
@@ -245,5 +236,117 @@ mod tests {
         assert_eq!(bright.per_band.len(), 3);
         let limit = |max_rms: f64| decide(&bright, &Limits { max_rms: Some(max_rms), max_top1: None }).verdict;
         assert_eq!([0.009, 0.010, 0.011].map(limit), [Verdict::Fail, Verdict::Inconclusive, Verdict::Pass]);
+    }
+
+    /// Two lit patches and an absent one; four replicates that scatter by 10 % about 1 and 2.
+    fn four_replicates() -> Truth {
+        let replicates = [0.9, 1.1, 0.95, 1.05].map(|f| vec![f, 2.0 * f, 0.0]).to_vec();
+        Truth::Sampled(Replicates { bands: 1, replicates })
+    }
+
+    fn of_three<'a>(bands: &'a [String], emission: &'a [f64]) -> Judged<'a> {
+        Judged { areas: &[1.0, 2.0, 0.0], emission, surfaces: &["a", "b", "gone"], bands, weights: &[2.0] }
+    }
+
+    #[test]
+    fn noise_is_reported_but_the_solutions_own_never_judges() {
+        let names = bands(&["y"]);
+        let judged = of_three(&names, &[0.0; 3]);
+        let mut solution = mono(&[1.0, 2.1, 0.0]);
+        let quiet = compare(&solution, &four_replicates(), None, &judged, 0.95, false).unwrap();
+        // Squared deviations of a factor: 0.025; se^2 = 0.025 / 12, the same share of every patch.
+        let floor = quiet.reference_noise_floor.unwrap();
+        assert!((floor - (0.025f64 / 12.0).sqrt()).abs() < 1e-12, "{floor}");
+        assert!((quiet.worst[0].std_err.unwrap() - 4.0 * floor).abs() < 1e-12);
+        assert_eq!(quiet.worst.len(), 2);
+        solution.std_err = Some(vec![0.3, 0.0, 0.0]);
+        let noisy = compare(&solution, &four_replicates(), None, &judged, 0.95, false).unwrap();
+        assert!((noisy.solution_noise.unwrap() - 0.3 / 3.0).abs() < 1e-12);
+        assert_eq!(Comparison { solution_noise: None, ..noisy }, quiet);
+    }
+
+    #[test]
+    fn errors_of_bands_may_add_up() {
+        let names = bands(&["r", "g"]);
+        let judged =
+            Judged { areas: &[1.0], emission: &[0.0; 2], surfaces: &["a"], bands: &names, weights: &[0.25, 0.75] };
+        let solution = Radiosity { bands: 2, values: vec![1.0, 1.0], std_err: Some(vec![0.4, 0.4]) };
+        let reference = Truth::Given(Radiosity { bands: 2, values: vec![2.0, 2.0], std_err: None });
+        let c = compare(&solution, &reference, None, &judged, 0.95, false).unwrap();
+        assert_eq!(c.solution_noise, Some(0.2));
+        let halves = c.per_band.iter().map(|(n, e)| (n.as_str(), e.unwrap().value)).collect::<Vec<_>>();
+        assert_eq!(halves, [("r", 0.5), ("g", 0.5)]);
+    }
+
+    #[test]
+    fn where_nothing_is_reflected_there_is_no_reflected_error() {
+        let names = bands(&["y"]);
+        let emission = [1.0, 2.0, 0.0];
+        // B differs from E by the rounding of a solver.
+        let reference = Truth::Given(mono(&[1.0 + 1e-14, 2.0, 0.0]));
+        let judged = of_three(&names, &emission);
+        let c = compare(&mono(&[1.1, 2.0, 0.0]), &reference, None, &judged, 0.95, false).unwrap();
+        assert_eq!((c.rms_reflected, c.emitter_share), (None, 1.0));
+        let refused = compare(&mono(&[1.1, 2.0, 0.0]), &reference, None, &judged, 0.95, true);
+        assert_eq!(refused, Err(MetricsError::DarkReference { what: "the reflected luminance" }));
+    }
+
+    #[test]
+    fn a_dark_band_has_no_error_and_a_dark_scene_is_refused() {
+        let names = bands(&["r", "g"]);
+        let judged =
+            Judged { areas: &[1.0], emission: &[0.0; 2], surfaces: &["a"], bands: &names, weights: &[0.5, 0.5] };
+        let of = |values: [f64; 2]| Radiosity { bands: 2, values: values.to_vec(), std_err: None };
+        let compared = |r| compare(&of([1.0, 1.0]), &Truth::Given(of(r)), None, &judged, 0.95, false);
+        let c = compared([1.0, 0.0]).unwrap();
+        assert_eq!(c.per_band, [("r".to_string(), Some(Estimate::exact(0.0))), ("g".to_string(), None)]);
+        assert_eq!(compared([0.0, 0.0]), Err(MetricsError::DarkReference { what: "the luminance" }));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_its_place() {
+        let names = bands(&["y"]);
+        let judged = of_three(&names, &[0.0; 3]);
+        let good = mono(&[1.0, 2.0, 0.0]);
+        let given = |values: &[f64]| Truth::Given(mono(values));
+        let run = |s: &Radiosity, r: &Truth, before: Option<&Truth>, confidence| {
+            compare(s, r, before, &judged, confidence, false).unwrap_err().to_string()
+        };
+        let reference = four_replicates();
+        assert!(run(&mono(&[1.0]), &reference, None, 0.95).contains("the solution has 1 values"));
+        assert!(run(&mono(&[1.0, f64::NAN, 0.0]), &reference, None, 0.95).contains("patch 1"));
+        assert!(run(&good, &given(&[1.0, 2.0]), None, 0.95).contains("the reference has 2 values"));
+        assert!(run(&good, &reference, Some(&given(&[1.0])), 0.95).contains("before the change has 1 values"));
+        assert!(run(&good, &reference, None, 1.0).contains("confidence of 1"));
+        let few = Truth::Sampled(Replicates { bands: 1, replicates: vec![vec![1.0, 2.0, 0.0]; 3] });
+        assert!(run(&good, &few, None, 0.95).contains("3 replicates"));
+        let bands_differ = Radiosity { bands: 3, values: vec![1.0; 9], std_err: None };
+        assert!(run(&bands_differ, &reference, None, 0.95).contains("3 bands"));
+        let nobody = Judged { areas: &[0.0; 3], ..judged };
+        assert_eq!(compare(&good, &reference, None, &nobody, 0.95, false), Err(MetricsError::NothingPresent));
+    }
+
+    #[test]
+    fn the_json_has_the_contracts_fields() {
+        let names = bands(&["y"]);
+        let c = compare(&mono(&[1.0, 2.1, 0.0]), &four_replicates(), None, &of_three(&names, &[0.0; 3]), 0.9, false);
+        let json = serde_json::to_value(c.unwrap()).unwrap();
+        let keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
+        let contract = [
+            "confidence",
+            "rms",
+            "top1",
+            "rms_reflected",
+            "bias",
+            "per_band",
+            "reference_noise_floor",
+            "solution_noise",
+            "emitter_share",
+            "patches",
+            "worst",
+        ];
+        assert_eq!(keys, contract);
+        assert!(json["top1"].is_null() && json["per_band"]["y"]["value"].is_number());
+        assert_eq!((json["worst"][0]["patch"].as_u64(), json["worst"][0]["surface"].as_str()), (Some(1), Some("b")));
     }
 }

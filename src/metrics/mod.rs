@@ -1,4 +1,4 @@
-//! How far a solution is from the reference, and what that means: eq. 7 of [GSG90], top 1 %, bias, energy.
+//! How far a solution is from the reference, and what that means: eq. 7 of GSG90, top 1 %, bias, energy.
 //! Areas, weights and names come in as data; [`decide`] is the only place that decides.
 
 mod bias;

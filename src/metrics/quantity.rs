@@ -29,7 +29,7 @@ impl<'a> Quantity<'a> {
         let whole = radiosities.chunks_exact(bands).map(weigh);
         match self.emission {
             None => whole.collect(),
-            Some(e) => whole.zip(e.chunks_exact(bands)).map(|(b, e)| b - weigh(e)).collect(),
+            Some(e) => whole.zip(e.chunks_exact(bands)).map(|(b, e)| beyond(b, weigh(e))).collect(),
         }
     }
 
@@ -46,6 +46,12 @@ impl<'a> Quantity<'a> {
         let add = |values: &[f64]| self.weights.iter().zip(values).map(|(w, v)| w.abs() * v).sum::<f64>();
         std_err.chunks_exact(self.weights.len()).map(add).collect()
     }
+}
+
+/// B - E, and nothing where B is E up to the rounding of a solver: a relative error against that would be noise.
+fn beyond(b: f64, e: f64) -> f64 {
+    const ROUNDING: f64 = 1e-12;
+    if (b - e).abs() <= ROUNDING * e.abs() { 0.0 } else { b - e }
 }
 
 /// Mean over the rows at every receiver.

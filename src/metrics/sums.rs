@@ -70,22 +70,40 @@ impl Sums {
         self.reference - self.noise
     }
 
-    /// Variance of `<Y, Y>` to first order in the noise.
-    pub fn reference_variance(&self) -> f64 {
-        four_variances_of_mean(self.along_reference.iter().copied())
-    }
-
-    /// Variance of `<d, d> - q <Y, Y>` to first order in the noise: four times that of the mean of
-    /// `<e_r, D> - q <-e_r, Y>`.
-    pub fn variance(&self, q: f64) -> f64 {
-        four_variances_of_mean(self.along_difference.iter().zip(&self.along_reference).map(|(x, z)| x - q * z))
+    /// Variances of `<D, D> - q <Y, Y>` and of `<Y, Y>`, and their covariance, to first order in the noise.
+    pub fn spread(&self, q: f64) -> Spread {
+        let r = self.replicates as f64;
+        if r < 2.0 {
+            return Spread::default();
+        }
+        // d<D, D> = 2 <e, D> and d<Y, Y> = 2 <-e, Y>: twice twice, over the variance of a mean.
+        let scale = 4.0 / (r * (r - 1.0));
+        let mut spread = Spread::default();
+        for (x, z) in self.along_difference.iter().zip(&self.along_reference) {
+            let w = x - q * z;
+            spread.residual += scale * w * w;
+            spread.reference += scale * z * z;
+            spread.both += scale * w * z;
+        }
+        spread
     }
 }
 
-/// Four times the variance of the mean of values that sum to zero; 0 for a single one.
-fn four_variances_of_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let r = values.len() as f64;
-    if r < 2.0 { 0.0 } else { 4.0 * values.map(|v| v * v).sum::<f64>() / (r * (r - 1.0)) }
+/// Variances of `<D, D> - q <Y, Y>` (the residual) and `<Y, Y>`, and their covariance.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Spread {
+    pub residual: f64,
+    pub reference: f64,
+    pub both: f64,
+}
+
+impl Spread {
+    /// Of the mean over independent sets.
+    pub fn of_mean(sets: &[Spread]) -> Self {
+        let scale = 1.0 / (sets.len() * sets.len()) as f64;
+        let mean = |f: fn(&Spread) -> f64| scale * sets.iter().map(f).sum::<f64>();
+        Self { residual: mean(|s| s.residual), reference: mean(|s| s.reference), both: mean(|s| s.both) }
+    }
 }
 
 /// Inner products between bundles of replicates.
@@ -158,4 +176,60 @@ fn largest_eigenvalue(m: &[f64], n: usize) -> f64 {
         }
     }
     value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stats::test_random::Random;
+
+    fn sums_of_noise(patches: usize, replicates: usize, common: f64, own: f64, seed: u64) -> Sums {
+        let mut random = Random(seed);
+        let rows: Vec<Vec<f64>> = (0..replicates)
+            .map(|_| {
+                let z = common * random.normal();
+                (0..patches).map(|_| 1.0 + z + own * random.normal()).collect()
+            })
+            .collect();
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        Sums::over(0..patches, &vec![1.0; patches], &vec![1.0; patches], &rows)
+    }
+
+    #[test]
+    fn noise_is_the_squared_norm_of_the_standard_errors() {
+        // Patch 0 (area 1) reads 1 and 3, patch 1 (area 5) reads 2 twice: se 1 and 0.
+        let sums = Sums::over(0..2, &[1.0, 5.0], &[2.0, 3.0], &[&[1.0, 2.0], &[3.0, 2.0]]);
+        assert_eq!((sums.noise, sums.difference, sums.reference), (1.0, 5.0, 24.0));
+        assert_eq!(sums.along_difference, [0.0, 0.0]);
+        assert_eq!(sums.along_reference, [-2.0, 2.0]);
+    }
+
+    #[test]
+    fn the_strongest_direction_is_measured_without_the_bulk_of_the_rest() {
+        // A common factor of variance 0.01 over 400 patches: 4; independent noise adds 0.04 in that direction,
+        // and 16 to the trace.
+        for replicates in [16, 64, 200] {
+            let n = 60;
+            let mean = |common, own| {
+                (0..n).map(|s| sums_of_noise(400, replicates, common, own, s).top_variance).sum::<f64>() / n as f64
+            };
+            let (common, both, bulk) = (mean(0.1, 0.0), mean(0.1, 0.2), mean(0.0, 0.2));
+            assert!((common / 4.0 - 1.0).abs() < 0.2, "{replicates}: {common}");
+            assert!((both / 4.04 - 1.0).abs() < 0.2, "{replicates}: {both}");
+            assert!(bulk < 0.5, "{replicates}: {bulk}");
+        }
+    }
+
+    #[test]
+    fn eigenvalues_by_hand() {
+        assert!((largest_eigenvalue(&[2.0, 1.0, 1.0, 2.0], 2) - 3.0).abs() < 1e-9);
+        assert!((largest_eigenvalue(&[1.0, 0.0, 0.0, 5.0], 2) - 5.0).abs() < 1e-9);
+        assert_eq!(largest_eigenvalue(&[0.0; 9], 3), 0.0);
+    }
+
+    #[test]
+    fn one_replicate_has_no_noise() {
+        let sums = Sums::over(0..1, &[2.0], &[3.0], &[&[1.0]]);
+        assert_eq!((sums.noise, sums.top_variance, sums.debiased_difference()), (0.0, 0.0, 8.0));
+    }
 }

@@ -35,7 +35,7 @@ pub struct Comparison {
     pub confidence: f64,
     /// [GSG90 eq. 7]: relative area-weighted luminance RMS.
     pub rms: Estimate,
-    /// The same over the 1 % of patches that change most; `None` without a state before.
+    /// The same over the 1 % of patches that change most; `None` without a state before, or where these are dark.
     pub top1: Option<Estimate>,
     /// Eq. 7 on B - E; `None` where nothing is reflected.
     pub rms_reflected: Option<Estimate>,
@@ -47,9 +47,10 @@ pub struct Comparison {
     /// sqrt(sum A se^2 / sum A Y^2): what remains of eq. 7 for a perfect solution; `None` if the reference
     /// states no error.
     pub reference_noise_floor: Option<f64>,
-    /// The same of the solution's own standard errors; `None` if it states none. Never part of a verdict.
+    /// The same of the solution's own standard errors, errors of bands taken as fully correlated (an upper bound);
+    /// `None` if it states none. Never part of a verdict.
     pub solution_noise: Option<f64>,
-    /// Share of patches with emission in the denominator of eq. 7.
+    /// Share of patches with emission in the denominator of eq. 7 of B, emission included, whatever is judged.
     pub emitter_share: f64,
     /// Patches present in the judged state.
     pub patches: usize,

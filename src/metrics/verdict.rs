@@ -58,5 +58,99 @@ fn rays_factor(e: &Estimate, limit: f64) -> Option<f64> {
     let (half_width, gap) =
         if e.value < limit { (e.high - e.value, limit - e.value) } else { (e.value - e.low, e.value - limit) };
     let shrink = half_width / gap;
-    (shrink < 1.0 / TOO_CLOSE).then(|| (MARGIN * shrink * shrink).ceil().max(2.0))
+    (shrink < 1.0 / TOO_CLOSE).then(|| whole(MARGIN * shrink * shrink).max(2.0))
+}
+
+/// Rounded up, but not for rounding's sake.
+fn whole(x: f64) -> f64 {
+    (x * (1.0 - 1e-9)).ceil()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn estimate(low: f64, value: f64, high: f64) -> Estimate {
+        Estimate { value, std_err: Some(0.5 * (high - value)), low, high }
+    }
+
+    fn comparison(rms: Estimate, top1: Option<Estimate>) -> Comparison {
+        Comparison {
+            confidence: 0.95,
+            rms,
+            top1,
+            rms_reflected: None,
+            bias: Estimate::exact(0.0),
+            per_band: vec![],
+            reference_noise_floor: None,
+            solution_noise: None,
+            emitter_share: 0.0,
+            patches: 1,
+            worst: vec![],
+        }
+    }
+
+    fn of_rms(e: Estimate, limit: f64) -> LimitOutcome {
+        decide(&comparison(e, None), &Limits { max_rms: Some(limit), max_top1: None }).limits.remove(0)
+    }
+
+    #[test]
+    fn above_below_and_across() {
+        let e = estimate(0.03, 0.04, 0.05);
+        assert_eq!(of_rms(e, 0.029).verdict, Verdict::Fail);
+        assert_eq!(of_rms(e, 0.03).verdict, Verdict::Inconclusive);
+        assert_eq!(of_rms(e, 0.049).verdict, Verdict::Inconclusive);
+        assert_eq!(of_rms(e, 0.05).verdict, Verdict::Pass);
+        assert_eq!(of_rms(Estimate::exact(0.05), 0.05).verdict, Verdict::Pass);
+        assert_eq!(of_rms(Estimate::exact(0.051), 0.05).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn one_sure_failure_fails_and_one_open_limit_leaves_it_open() {
+        let (good, bad, open) = (estimate(0.01, 0.02, 0.03), estimate(0.06, 0.07, 0.08), estimate(0.04, 0.05, 0.06));
+        let limits = Limits { max_rms: Some(0.05), max_top1: Some(0.05) };
+        let of = |rms, top1| decide(&comparison(rms, Some(top1)), &limits).verdict;
+        assert_eq!(of(good, good), Verdict::Pass);
+        assert_eq!(of(good, bad), Verdict::Fail);
+        assert_eq!(of(open, bad), Verdict::Fail);
+        assert_eq!(of(bad, open), Verdict::Fail);
+        assert_eq!(of(open, good), Verdict::Inconclusive);
+        assert_eq!(of(good, open), Verdict::Inconclusive);
+    }
+
+    #[test]
+    fn only_limits_given_count() {
+        let bad = estimate(0.06, 0.07, 0.08);
+        let d = decide(&comparison(Estimate::exact(0.0), Some(bad)), &Limits { max_rms: Some(0.05), max_top1: None });
+        assert_eq!((d.verdict, d.limits.len(), d.limits[0].metric.as_str()), (Verdict::Pass, 1, "rms"));
+        let d = decide(&comparison(bad, Some(bad)), &Limits { max_rms: None, max_top1: Some(0.09) });
+        assert_eq!((d.verdict, d.limits.len(), d.limits[0].metric.as_str()), (Verdict::Pass, 1, "top1"));
+    }
+
+    #[test]
+    fn a_metric_that_is_missing_is_open_and_rays_do_not_help() {
+        let d = decide(&comparison(Estimate::exact(0.0), None), &Limits { max_rms: None, max_top1: Some(0.5) });
+        assert_eq!((d.verdict, d.limits[0].rays_factor), (Verdict::Inconclusive, None));
+    }
+
+    #[test]
+    fn rays_that_would_decide() {
+        // Half-width 0.01 has to become 0.005: four times the rays, twice that for the value's own scatter.
+        assert_eq!(of_rms(estimate(0.03, 0.04, 0.05), 0.045).rays_factor, Some(8.0));
+        assert_eq!(of_rms(estimate(0.02, 0.04, 0.05), 0.03).rays_factor, Some(8.0));
+        // Never less than twice; never where the limit is the value.
+        assert_eq!(of_rms(estimate(0.03, 0.04, 0.05), 0.0499).rays_factor, Some(3.0));
+        assert_eq!(of_rms(estimate(0.03, 0.04, 0.05), 0.04).rays_factor, None);
+        assert_eq!(of_rms(estimate(0.03, 0.04, 0.05), 0.0401).rays_factor, None);
+        assert_eq!(of_rms(estimate(0.0, 0.0, 0.05), 0.04).rays_factor, Some(4.0));
+        assert_eq!(of_rms(estimate(0.03, 0.04, 0.05), 0.06).rays_factor, None);
+    }
+
+    #[test]
+    fn error_is_shared_among_the_limits() {
+        let both = Limits { max_rms: Some(0.1), max_top1: Some(0.1) };
+        assert!((shared_confidence(0.95, &both) - 0.975).abs() < 1e-15);
+        assert_eq!(shared_confidence(0.95, &Limits { max_top1: None, ..both }), 0.95);
+        assert_eq!(shared_confidence(0.95, &Limits::default()), 0.95);
+    }
 }

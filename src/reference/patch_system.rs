@@ -119,7 +119,8 @@ pub fn compute(
     })
 }
 
-fn check_size(stage: &Stage, plan: &Plan) -> Result<(), ReferenceError> {
+/// Refuses scenes and plans that are larger than the hit counters.
+pub fn check_size(stage: &Stage, plan: &Plan) -> Result<(), ReferenceError> {
     let too_large = |what, got: u64, most: u64, mend| Err(ReferenceError::TooLarge { what, got, most, mend });
     if stage.patch_count() >= Entry::MAX_PATCHES {
         return too_large(

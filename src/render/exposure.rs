@@ -6,9 +6,7 @@ use super::LinearRgb;
 use super::area_percentile;
 use crate::view::{Photometry, Primaries};
 
-/// Display value (linear, 0 to 1) that the brightest reflecting patches come to.
-const TARGET: f64 = 0.8;
-/// Share of the reflecting area that is darker than that.
+/// Share of the reflecting area that stays below the display's white.
 const SHARE: f64 = 0.99;
 
 /// How bands become display colours.
@@ -25,8 +23,8 @@ pub enum DisplayColour {
 pub struct Exposure {
     /// Display value per unit of radiosity, m^2/W.
     pub scale: f64,
-    /// Luminance that is shown as 80 % of the display's white, W/m^2.
-    pub reference_luminance: f64,
+    /// Luminance that is shown as the display's white, W/m^2.
+    pub white_luminance: f64,
     colour: DisplayColour,
     weights: Vec<f64>,
 }
@@ -60,8 +58,7 @@ const BT2020_TO_BT709: [[f64; 3]; 3] = [
 ];
 
 impl Exposure {
-    /// Fits the scale: of the reflecting area, 99 % comes out at or below 80 % of the display's white. Lamps may
-    /// burn out. Where every patch is a lamp, or all that reflects is dark, the lamps count too.
+    /// Fits the scale: of the reflecting area, 99 % comes out at or below the display's white. Lamps may burn out. Where every patch is a lamp, or all that reflects is dark, the lamps count too.
     ///
     /// `luminances`, `areas` and `is_emitter` have one entry per patch, the luminances those of the reference.
     pub fn fit(photometry: &Photometry, luminances: &[f64], areas: &[f64], is_emitter: &[bool]) -> Self {
@@ -70,10 +67,10 @@ impl Exposure {
             let pairs = (0..luminances.len()).filter(kept).map(|i| (luminances[i], areas[i]));
             area_percentile(pairs, SHARE).filter(|y| *y > 0.0)
         };
-        let reference_luminance = among(false).or_else(|| among(true)).unwrap_or(1.0);
+        let white_luminance = among(false).or_else(|| among(true)).unwrap_or(1.0);
         Self {
-            scale: TARGET / reference_luminance,
-            reference_luminance,
+            scale: 1.0 / white_luminance,
+            white_luminance,
             colour: DisplayColour::of(photometry),
             weights: photometry.weights.clone(),
         }
@@ -97,17 +94,18 @@ mod tests {
     fn the_lamp_does_not_set_the_exposure() {
         let p = Photometry::rec709();
         let e = Exposure::fit(&p, &[100.0, 0.5, 0.25], &[1.0, 1.0, 1.0], &[true, false, false]);
-        assert_eq!(e.reference_luminance, 0.5);
+        assert_eq!(e.white_luminance, 0.5);
         let shown = e.display(&[0.5, 0.5, 0.5]);
-        assert!((shown[1] - 0.8).abs() < 1e-12);
+        assert!((shown[1] - 1.0).abs() < 1e-12);
+        assert!((e.display(&[0.25; 3])[1] - 0.5).abs() < 1e-12);
         assert_eq!(e.display(&[100.0; 3]), [1.0; 3]);
     }
 
     #[test]
     fn a_scene_of_lamps_and_a_dark_scene_still_have_an_exposure() {
         let p = Photometry::rec709();
-        assert_eq!(Exposure::fit(&p, &[2.0, 2.0], &[1.0, 1.0], &[true, true]).reference_luminance, 2.0);
-        assert_eq!(Exposure::fit(&p, &[0.0, 0.0], &[1.0, 1.0], &[false, false]).scale, 0.8);
+        assert_eq!(Exposure::fit(&p, &[2.0, 2.0], &[1.0, 1.0], &[true, true]).white_luminance, 2.0);
+        assert_eq!(Exposure::fit(&p, &[0.0, 0.0], &[1.0, 1.0], &[false, false]).scale, 1.0);
     }
 
     #[test]
@@ -117,9 +115,9 @@ mod tests {
             let p = Photometry { bands: vec!["a".into(); 3], weights: primaries.weights().to_vec() };
             let e = Exposure::fit(&p, &[1.0], &[1.0], &[false]);
             let shown = e.display(&white);
-            assert!(shown.iter().all(|c| (c - 0.8).abs() < 1e-4), "{primaries:?} {shown:?}");
+            assert!(shown.iter().all(|c| (c - 1.0).abs() < 1e-4), "{primaries:?} {shown:?}");
         }
         let mono = Photometry { bands: vec!["y".into()], weights: vec![1.0] };
-        assert_eq!(Exposure::fit(&mono, &[1.0], &[1.0], &[false]).display(&[0.5]), [0.4; 3]);
+        assert_eq!(Exposure::fit(&mono, &[1.0], &[1.0], &[false]).display(&[0.5]), [0.5; 3]);
     }
 }

@@ -3,31 +3,36 @@
 use super::Visibility;
 use crate::math::DVec3;
 use crate::raycast::Tracer;
-use crate::scene::Stage;
+use crate::scene::{Grid, Patch, Stage};
 use crate::view::Camera;
 
 /// Size of a fitted picture, pixels.
 const SIZE: [u32; 2] = [640, 480];
 /// Size of the trial pictures that candidates are judged by.
 const TRIAL: [u32; 2] = [48, 36];
+/// Share of the picture that a scene seen from outside fills at most, along each axis.
+const FILLED: f64 = 0.94;
 /// Vertical field of view from outside and from inside, degrees.
 const FOV: [f64; 2] = [38.0, 72.0];
 
 /// The camera that shows most of the scene: three-quarter views from outside and from the corners inside are
-/// tried, and the one that sees the fronts of the largest share of the surfaces wins.
+/// tried, and the one that sees the fronts of the largest area wins, few backs and little background counting too.
 ///
 /// z is taken as up.
 pub fn fit_camera(tracer: &Tracer) -> Camera {
-    let stage = tracer.stage();
+    let regions = Regions::of(tracer.stage());
+    let tried: Vec<(Camera, Sight)> =
+        candidates(tracer.stage()).into_iter().map(|c| look(tracer, &regions, c)).collect();
+    let most = tried.iter().map(|(_, s)| s.area).fold(0.0, f64::max);
     let mut best: Option<(f64, Camera)> = None;
-    for camera in candidates(stage) {
-        let score = score(tracer, &camera);
+    for (camera, sight) in tried {
+        let score = sight.score(most);
         // The first of equals stays: the order of candidates is the order of preference.
         if best.as_ref().is_none_or(|(s, _)| score > *s + 1e-9) {
             best = Some((score, camera));
         }
     }
-    let camera = best.map_or_else(|| from_outside(DVec3::ZERO, 1.0, DVec3::new(1.0, -1.0, 1.0)), |(_, c)| c);
+    let camera = best.map_or_else(|| from_outside(-DVec3::ONE, DVec3::ONE, DVec3::new(1.0, -1.0, 1.0)), |(_, c)| c);
     Camera { size: SIZE, ..camera }
 }
 
@@ -37,10 +42,9 @@ fn candidates(stage: &Stage) -> Vec<Camera> {
         return Vec::new();
     }
     let (centre, size) = ((low + high) * 0.5, high - low);
-    let radius = (0.5 * size.length()).max(1e-6);
-    let mut all: Vec<Camera> = outside_directions().map(|d| from_outside(centre, radius, d)).collect();
+    let mut all: Vec<Camera> = outside_directions().map(|d| from_outside(low, high, d)).collect();
     // A flat scene has no inside.
-    if size.min_element() > 1e-3 * radius {
+    if size.min_element() > 1e-3 * size.length() {
         all.extend(inside_corners().map(|c| from_inside(centre, size, c)));
     }
     all
@@ -61,9 +65,21 @@ fn inside_corners() -> impl Iterator<Item = DVec3> {
     [0.2, 0.9, -0.9].into_iter().flat_map(move |z| sides.map(|(x, y)| DVec3::new(0.9 * x, 0.9 * y, z)))
 }
 
-fn from_outside(centre: DVec3, radius: f64, towards_eye: DVec3) -> Camera {
-    let distance = 1.04 * radius / (0.5 * FOV[0].to_radians()).sin();
-    fitted(centre + towards_eye.normalize() * distance, centre, FOV[0])
+/// Looks at the middle of the box from `towards_eye`, as near as the picture still holds all eight corners.
+fn from_outside(low: DVec3, high: DVec3, towards_eye: DVec3) -> Camera {
+    let centre = (low + high) * 0.5;
+    let forward = -towards_eye.normalize();
+    let right = forward.cross(DVec3::Z).normalize();
+    let up = right.cross(forward);
+    let half = (0.5 * FOV[0].to_radians()).tan() * FILLED;
+    let wide = half * f64::from(SIZE[0]) / f64::from(SIZE[1]);
+    let distance = (0..8).map(|k| {
+        let pick = |axis: usize| if k >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        let corner = DVec3::new(pick(0), pick(1), pick(2)) - centre;
+        (corner.dot(up).abs() / half).max(corner.dot(right).abs() / wide) - corner.dot(forward)
+    });
+    let distance = distance.fold(0.0, f64::max).max(1e-6);
+    fitted(centre - forward * distance, centre, FOV[0])
 }
 
 fn from_inside(centre: DVec3, size: DVec3, corner: DVec3) -> Camera {
@@ -76,22 +92,72 @@ fn fitted(eye: DVec3, target: DVec3, fov: f64) -> Camera {
     Camera { name: "fitted".into(), eye, target, up: DVec3::Z, fov, size: TRIAL }
 }
 
-/// How much a camera shows: the share of all surfaces (by area) whose fronts it sees, plus how little of the
-/// picture is wasted on backs and background.
-fn score(tracer: &Tracer, camera: &Camera) -> f64 {
-    let stage = tracer.stage();
-    let seen = Visibility::cast(tracer, camera, 1);
-    let [front, back, _] = seen.shares();
-    let mut in_sight = vec![false; stage.facets.len()];
-    for pixel in 0..seen.pixel_count() {
-        if let Some(patch) = stage.patches.get(seen.samples(pixel)[0] as usize) {
-            in_sight[patch.facet as usize] = true;
+/// Regions along each edge of a quadrilateral.
+const DIVISION: u32 = 3;
+
+/// Quadrilaterals in ninths, everything else whole: large enough to be hit by the few rays of a trial picture
+/// from near and far alike.
+struct Regions {
+    /// Region of each patch.
+    of_patch: Vec<usize>,
+    /// Area of each region, m^2.
+    areas: Vec<f64>,
+}
+
+impl Regions {
+    fn of(stage: &Stage) -> Self {
+        let of_patch: Vec<usize> = stage.patches.iter().map(|p| region(stage, p)).collect();
+        let sides = 2 * (DIVISION * DIVISION) as usize;
+        let mut areas = vec![0.0; stage.facets.len() * sides];
+        for (patch, region) in stage.patches.iter().zip(&of_patch).filter(|(p, _)| p.is_present()) {
+            areas[*region] += patch.area;
         }
+        Self { of_patch, areas }
     }
-    let area = |f: usize| crate::math::area(&stage.facets[f].vertices);
-    let total: f64 = (0..stage.facets.len()).map(area).sum();
-    let shown: f64 = (0..stage.facets.len()).filter(|f| in_sight[*f]).map(area).sum();
-    shown / total + 0.25 * front - 0.5 * back
+}
+
+fn region(stage: &Stage, patch: &Patch) -> usize {
+    let Some(facet) = stage.facets.get(patch.facet as usize) else { return 0 };
+    let back = patch.normal.dot(facet.normal) < 0.0;
+    let cell = match facet.grid {
+        Grid::Quad { na, nb } => patch.a * DIVISION / na + patch.b * DIVISION / nb * DIVISION,
+        Grid::Triangle { .. } | Grid::Whole => 0,
+    };
+    let side = patch.facet as usize * 2 + usize::from(back);
+    side * (DIVISION * DIVISION) as usize + cell as usize
+}
+
+/// How much a camera shows.
+struct Sight {
+    /// Area of the regions in sight, m^2.
+    area: f64,
+    /// Share of the picture that shows patches.
+    front: f64,
+    /// Share of the picture that shows backs.
+    back: f64,
+    /// True for a view from outside: the whole scene in one picture, preferred where it shows as much.
+    outside: bool,
+}
+
+impl Sight {
+    fn score(&self, most: f64) -> f64 {
+        // Relative to the best: few rays never meet all regions of a large mesh.
+        let area = self.area / most.max(f64::MIN_POSITIVE);
+        area + 0.15 * self.front - 0.5 * self.back + if self.outside { 0.1 } else { 0.0 }
+    }
+}
+
+fn look(tracer: &Tracer, regions: &Regions, camera: Camera) -> (Camera, Sight) {
+    let (low, high) = tracer.stage().bounds();
+    let outside = camera.eye.cmplt(low).any() || camera.eye.cmpgt(high).any();
+    let seen = Visibility::cast(tracer, &camera, 1);
+    let [front, back, _] = seen.shares();
+    let region = |pixel| regions.of_patch.get(seen.samples(pixel)[0] as usize).copied();
+    let mut in_sight: Vec<usize> = (0..seen.pixel_count()).filter_map(region).collect();
+    in_sight.sort_unstable();
+    in_sight.dedup();
+    let area = in_sight.iter().map(|r| regions.areas[*r]).sum();
+    (camera, Sight { area, front, back, outside })
 }
 
 #[cfg(test)]
@@ -115,7 +181,10 @@ mod tests {
             let camera = fit_camera(&tracer(&stage));
             assert_eq!(camera.eye.z > 0.0, !turned, "{:?}", camera.eye);
             let seen = Visibility::cast(&tracer(&stage), &camera, 1);
-            assert_eq!(seen.coverage(0), [], "there is a margin");
+            let [w, h] = SIZE.map(|s| s as usize);
+            let rim = (0..w).flat_map(|x| [x, x + (h - 1) * w]).chain((0..h).flat_map(|y| [y * w, y * w + w - 1]));
+            assert!(rim.into_iter().all(|p| seen.coverage(p).is_empty()), "there is a margin");
+            assert!(seen.shares()[0] > 0.2, "and not much of one: {:?}", seen.shares());
             assert!(seen.middles(&[0, 1, 2, 3]).iter().all(Option::is_some));
         }
     }

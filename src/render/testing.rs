@@ -239,6 +239,9 @@ fn lambert(stage: &Stage, i: usize, j: usize) -> f64 {
 fn point_factor(stage: &Stage, i: usize, j: usize) -> f64 {
     let (from, to) = (&stage.patches[i], &stage.patches[j]);
     let r = middle(to) - middle(from);
+    if i == j {
+        return 0.0;
+    }
     let cosines = (from.normal.dot(r).max(0.0), to.normal.dot(-r).max(0.0));
     cosines.0 * cosines.1 * to.area / (std::f64::consts::PI * r.length_squared().powi(2))
 }

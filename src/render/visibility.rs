@@ -94,11 +94,12 @@ impl Visibility {
         let mut sums = vec![(0.0, 0.0, 0u32); patches.len()];
         let per_pixel = (self.side * self.side) as usize;
         for (k, landing) in self.landings.iter().enumerate() {
-            if let Some(slot) = patches.iter().position(|p| *p as u64 == u64::from(*landing)) {
+            // The same patch may be asked for more than once.
+            for (sum, _) in sums.iter_mut().zip(patches).filter(|(_, p)| **p as u64 == u64::from(*landing)) {
                 let (pixel, width) = (k / per_pixel, self.camera.size[0] as usize);
-                sums[slot].0 += (pixel % width) as f64 + 0.5;
-                sums[slot].1 += (pixel / width) as f64 + 0.5;
-                sums[slot].2 += 1;
+                sum.0 += (pixel % width) as f64 + 0.5;
+                sum.1 += (pixel / width) as f64 + 0.5;
+                sum.2 += 1;
             }
         }
         let mean = |&(x, y, n): &(f64, f64, u32)| (n > 0).then(|| (x / f64::from(n), y / f64::from(n)));
@@ -181,5 +182,7 @@ mod tests {
         let [w, h] = seen.size().map(f64::from);
         assert!((x - w / 2.0).abs() < w / 4.0 && (y - h / 2.0).abs() < h / 4.0);
         assert_eq!(seen.middles(&[stage.patch_count() + 7]), [None]);
+        let twice = seen.middles(&[patch, patch]);
+        assert!(twice[0].is_some() && twice[0] == twice[1]);
     }
 }

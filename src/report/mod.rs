@@ -1,1 +1,30 @@
-//! (to come)
+//! Finished records as pages, tables and files. Formats, never computes.
+//!
+//! Every output is an [`Exporter`]; what several outputs show is made ready once: [`headline`] says the verdict in
+//! a sentence, [`metric_lines`] and [`worst_lines`] are the tables.
+
+mod artifact;
+mod asked;
+mod figures;
+mod format;
+mod headline;
+mod html;
+mod json;
+mod junit;
+mod layers;
+mod lines;
+mod markdown;
+#[cfg(test)]
+mod testing;
+mod text;
+
+pub use artifact::{Artifact, Exporter, Extras, Phase, ReportError, save};
+pub use figures::{ColourBar, Figure, Mark, ViewFigures, figures};
+pub use headline::{Headline, headline, warnings};
+pub use html::{HtmlReport, PAGE_NAME};
+pub use json::{Json, json_object};
+pub use junit::JUnit;
+pub use layers::exr_layers;
+pub use lines::{MetricLine, WorstLine, metric_lines, worst_lines};
+pub use markdown::Markdown;
+pub use text::{Text, text_summary};

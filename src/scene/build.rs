@@ -35,10 +35,10 @@ impl Scene {
             enclosure: self.enclosure,
             materials: standing.materials,
             surfaces: self.surfaces.iter().map(names).collect(),
+            cameras: self.cameras.clone(),
             facets,
             patches,
             elements,
-            cameras: self.cameras.clone(),
         })
     }
 

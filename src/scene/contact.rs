@@ -5,7 +5,7 @@
 //! the inside of the box before it. A fan of directions decides: where more than half of what it meets first
 //! are backs of one-sided facets, the place is inside a solid, and the pair is a contact.
 
-use super::tree::{Bounds, BoxTree};
+use super::tree::{Bounds, BoxTree, meet};
 use super::{Facet, Region};
 use crate::math::{DVec3, Frame, area, diameter, intersect_convex, subtract_convex};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 pub const COINCIDENCE_TOLERANCE: f64 = 1e-7;
 
 /// Directions of the fan that looks for the inside of solids.
-const FAN: u32 = 32;
+const FAN: u32 = 24;
 /// Least cosine of the fan's directions to the normal: grazing rays run along the plane itself.
 const FAN_MIN_COSINE: f64 = 0.15;
 
@@ -65,25 +65,29 @@ struct Survey<'a> {
     tolerance: f64,
     /// Largest distance of a corner from the facet's own mean plane.
     flatness: Vec<f64>,
+    /// Directions of the fan, z along the normal.
+    fan: Vec<DVec3>,
 }
 
 /// All pairs of coincident facets, in order of their numbers.
 pub(super) fn coincidences(facets: &[Facet], objects: &[u32]) -> Vec<Overlap> {
-    let all = facets.iter().fold(None, |b: Option<Bounds>, f| {
-        let own = Bounds::of(&f.vertices);
-        Some(b.map_or(own, |b| Bounds { lo: b.lo.min(own.lo), hi: b.hi.max(own.hi) }))
-    });
-    let Some(all) = all else { return Vec::new() };
-    let tolerance = COINCIDENCE_TOLERANCE * all.lo.distance(all.hi);
+    let tolerance = tolerance(facets);
     let survey = Survey {
         facets,
         objects,
         tree: BoxTree::new(facets.iter().map(|f| Bounds::of(&f.vertices).grown(tolerance)).collect()),
         tolerance,
         flatness: facets.iter().map(flatness).collect(),
+        fan: (0..FAN).map(fan_direction).collect(),
     };
     let pairs: Vec<Vec<Overlap>> = (0..facets.len() as u32).into_par_iter().map(|i| survey.overlaps_of(i)).collect();
     pairs.into_iter().flatten().collect()
+}
+
+/// Distance within which planes are one, metres.
+fn tolerance(facets: &[Facet]) -> f64 {
+    let all = facets.iter().map(|f| Bounds::of(&f.vertices)).reduce(Bounds::joined);
+    all.map_or(0.0, |b| COINCIDENCE_TOLERANCE * b.lo.distance(b.hi))
 }
 
 fn flatness(facet: &Facet) -> f64 {
@@ -97,7 +101,7 @@ impl Survey<'_> {
         let mut later = Vec::new();
         let bounds = Bounds::of(&self.facets[i as usize].vertices).grown(self.tolerance);
         self.tree.near(&bounds, |j| {
-            if j > i && self.parallel(i, j) {
+            if j > i && self.may_coincide(i, j) {
                 later.push(j);
             }
         });
@@ -105,10 +109,12 @@ impl Survey<'_> {
         later.into_iter().filter_map(|j| self.overlap(i, j)).collect()
     }
 
-    /// Cheap test before any clipping.
-    fn parallel(&self, i: u32, j: u32) -> bool {
+    /// Cheap test before any clipping: parallel, and more than an edge in common.
+    fn may_coincide(&self, i: u32, j: u32) -> bool {
         let (a, b) = (&self.facets[i as usize], &self.facets[j as usize]);
-        a.normal.dot(b.normal).abs() > 0.999
+        let parallel = a.normal.dot(b.normal).abs() > 0.999;
+        // The boxes are larger by the tolerance on each side; an overlap is broader than it in some direction.
+        parallel && self.tree.bounds(i).common_breadth(self.tree.bounds(j)) > 2.6 * self.tolerance
     }
 
     fn overlap(&self, i: u32, j: u32) -> Option<Overlap> {
@@ -138,15 +144,19 @@ impl Survey<'_> {
         let along = place[1] - place[0];
         let frame = Frame::with_x_axis(normal, along);
         let origin = crate::math::centroid(place);
-        let (mut backs, mut others) = (0, 0);
-        for k in 0..FAN {
-            match self.first_met(origin, fan_direction(&frame, k), normal, self.object(j)) {
-                Some(true) => backs += 1,
-                Some(false) => others += 1,
+        // Backs count up, all else down.
+        let mut lead: i32 = 0;
+        for (left, direction) in (0..FAN).rev().zip(&self.fan) {
+            match self.first_met(origin, frame.to_world(*direction), normal, self.object(j)) {
+                Some(true) => lead += 1,
+                Some(false) => lead -= 1,
                 None => {}
             }
+            if lead.unsigned_abs() > left {
+                break;
+            }
         }
-        backs > others
+        lead > 0
     }
 
     fn object(&self, facet: u32) -> u32 {
@@ -160,7 +170,9 @@ impl Survey<'_> {
         let mut own = [false; 2];
         let least = 2.0 * self.tolerance / direction.dot(normal);
         self.tree.along(origin, direction, |i| {
-            if let Some((t, back)) = self.meet(i, origin, direction).filter(|(t, _)| *t > least) {
+            if let Some((t, back)) =
+                meet(&self.facets[i as usize], origin, direction, self.tolerance).filter(|(t, _)| *t > least)
+            {
                 let side = usize::from(back);
                 if t < nearest[side] {
                     (nearest[side], own[side]) = (t, self.object(i) == object);
@@ -174,32 +186,14 @@ impl Survey<'_> {
             false => Some(back < front),
         }
     }
-
-    /// Distance to facet `i` and whether its dark side is met.
-    fn meet(&self, i: u32, origin: DVec3, direction: DVec3) -> Option<(f64, bool)> {
-        let facet = &self.facets[i as usize];
-        let speed = direction.dot(facet.normal);
-        if speed.abs() < 1e-9 {
-            return None;
-        }
-        let t = (facet.vertices[0] - origin).dot(facet.normal) / speed;
-        let p = origin + direction * t;
-        let corners = &facet.vertices;
-        let inside = (0..corners.len()).all(|k| {
-            let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-            // A little generous, so that no ray slips through between neighbours.
-            facet.normal.cross(b - a).dot(p - a) >= -self.tolerance * a.distance(b)
-        });
-        inside.then_some((t, speed > 0.0 && facet.first_back_patch.is_none()))
-    }
 }
 
 /// Direction k of a spiral over the hemisphere without its rim.
-fn fan_direction(frame: &Frame, k: u32) -> DVec3 {
+fn fan_direction(k: u32) -> DVec3 {
     let z = FAN_MIN_COSINE + (1.0 - FAN_MIN_COSINE) * (f64::from(k) + 0.5) / f64::from(FAN);
     let turn = f64::from(k) * PI * (3.0 - 5f64.sqrt());
     let r = (1.0 - z * z).sqrt();
-    frame.to_world(DVec3::new(r * turn.cos(), r * turn.sin(), z))
+    DVec3::new(r * turn.cos(), r * turn.sin(), z)
 }
 
 /// What covers each side of each facet.
@@ -211,12 +205,7 @@ pub(super) struct Covers {
 
 impl Covers {
     pub(super) fn of(facets: &[Facet], overlaps: &[Overlap]) -> Self {
-        let bounds = facets.iter().map(|f| Bounds::of(&f.vertices));
-        let diagonal = bounds
-            .reduce(|a, b| Bounds { lo: a.lo.min(b.lo), hi: a.hi.max(b.hi) })
-            .map_or(0.0, |b| b.lo.distance(b.hi));
-        let mut covers =
-            Self { sides: vec![[Vec::new(), Vec::new()]; facets.len()], tolerance: COINCIDENCE_TOLERANCE * diagonal };
+        let mut covers = Self { sides: vec![[Vec::new(), Vec::new()]; facets.len()], tolerance: tolerance(facets) };
         overlaps.iter().for_each(|o| covers.add(facets, o));
         covers
     }

@@ -10,6 +10,7 @@ mod error;
 mod hash;
 mod model;
 mod numbering;
+mod plain;
 mod region;
 mod stage;
 mod states;

@@ -30,7 +30,7 @@ pub struct Stage {
     pub patches: Vec<Patch>,
     /// All elements; those of patch i are `patches[i].elements`.
     pub elements: Vec<Element>,
-    /// Cameras in file order.
+    /// Cameras in file order; empty where the file has none.
     pub cameras: Vec<Camera>,
 }
 

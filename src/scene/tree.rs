@@ -1,5 +1,6 @@
 //! A tree of bounding boxes: which facets lie near a box, which along a ray.
 
+use super::Facet;
 use crate::math::DVec3;
 
 /// An axis-aligned box.
@@ -20,7 +21,7 @@ impl Bounds {
         Self { lo: self.lo - by, hi: self.hi + by }
     }
 
-    fn joined(self, other: Self) -> Self {
+    pub(super) fn joined(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
@@ -28,11 +29,19 @@ impl Bounds {
         self.lo.cmple(other.hi).all() && other.lo.cmple(self.hi).all()
     }
 
-    /// True if the ray passes through the box before `t_max`.
-    fn on_ray(&self, origin: DVec3, inverse: DVec3, t_max: f64) -> bool {
+    /// The second largest extent of the common part of two boxes that meet: how far it is from a mere edge.
+    pub(super) fn common_breadth(&self, other: &Self) -> f64 {
+        let extent = self.hi.min(other.hi) - self.lo.max(other.lo);
+        let mut sides = extent.to_array();
+        sides.sort_by(f64::total_cmp);
+        sides[1]
+    }
+
+    /// Where the ray enters the box, if it does.
+    fn entry(&self, origin: DVec3, inverse: DVec3) -> Option<f64> {
         let (a, b) = ((self.lo - origin) * inverse, (self.hi - origin) * inverse);
         let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
-        near <= far && far >= 0.0 && near <= t_max
+        (near <= far && far >= 0.0).then_some(near)
     }
 }
 
@@ -82,39 +91,68 @@ impl BoxTree {
         at as u32
     }
 
-    fn walk(&self, mut enter: impl FnMut(&Bounds) -> bool, mut visit: impl FnMut(u32)) {
-        let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0u32] };
-        while let Some(at) = stack.pop() {
-            let node = &self.nodes[at as usize];
-            if !enter(&node.bounds) {
-                continue;
-            }
-            if node.count == 0 {
-                stack.extend([node.start, at + 1]);
-            } else {
-                self.order[node.start as usize..][..node.count as usize].iter().for_each(|i| visit(*i));
-            }
-        }
+    pub(super) fn bounds(&self, i: u32) -> &Bounds {
+        &self.boxes[i as usize]
     }
 
     /// Calls `visit` for every box that meets `bounds`.
     pub(super) fn near(&self, bounds: &Bounds, mut visit: impl FnMut(u32)) {
-        self.walk(
-            |b| b.meets(bounds),
-            |i| {
-                if self.boxes[i as usize].meets(bounds) {
-                    visit(i);
-                }
-            },
-        );
+        let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0u32] };
+        while let Some(at) = stack.pop() {
+            let node = &self.nodes[at as usize];
+            if !node.bounds.meets(bounds) {
+                continue;
+            }
+            match node.count {
+                0 => stack.extend([node.start, at + 1]),
+                _ => self.leaf(node).filter(|i| self.boxes[*i as usize].meets(bounds)).for_each(&mut visit),
+            }
+        }
     }
 
-    /// Calls `visit` for boxes on the ray, which returns how far is still of interest.
+    /// Calls `visit` for boxes on the ray, near ones first; it returns how far is still of interest.
     pub(super) fn along(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(u32) -> f64) {
         let inverse = direction.recip();
-        let reach = std::cell::Cell::new(f64::INFINITY);
-        self.walk(|b| b.on_ray(origin, inverse, reach.get()), |i| reach.set(visit(i)));
+        let mut reach = f64::INFINITY;
+        let entry = |at: u32| self.nodes[at as usize].bounds.entry(origin, inverse).map(|t| (t, at));
+        let mut stack: Vec<(f64, u32)> =
+            if self.nodes.is_empty() { Vec::new() } else { entry(0).into_iter().collect() };
+        while let Some((t, at)) = stack.pop() {
+            let node = &self.nodes[at as usize];
+            if t > reach {
+                continue;
+            }
+            if node.count > 0 {
+                self.leaf(node).for_each(|i| reach = visit(i));
+                continue;
+            }
+            match (entry(at + 1), entry(node.start)) {
+                (Some(a), Some(b)) => stack.extend(if a.0 <= b.0 { [b, a] } else { [a, b] }),
+                (one, other) => stack.extend(one.or(other)),
+            }
+        }
     }
+
+    fn leaf(&self, node: &Node) -> impl Iterator<Item = u32> + '_ {
+        self.order[node.start as usize..][..node.count as usize].iter().copied()
+    }
+}
+
+/// Distance at which a ray meets a facet, and whether it meets its dark side. A little generous at the edges,
+/// so that no ray slips through between neighbours.
+pub(super) fn meet(facet: &Facet, origin: DVec3, direction: DVec3, tolerance: f64) -> Option<(f64, bool)> {
+    let speed = direction.dot(facet.normal);
+    if speed.abs() < 1e-9 {
+        return None;
+    }
+    let t = (facet.vertices[0] - origin).dot(facet.normal) / speed;
+    let p = origin + direction * t;
+    let corners = &facet.vertices;
+    let inside = (0..corners.len()).all(|k| {
+        let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+        facet.normal.cross(b - a).dot(p - a) >= -tolerance * a.distance(b)
+    });
+    inside.then_some((t, speed > 0.0 && facet.first_back_patch.is_none()))
 }
 
 #[cfg(test)]

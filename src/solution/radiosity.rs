@@ -1,7 +1,9 @@
 //! Radiosities per patch (or element) and band, single or replicated.
 
+use serde::{Deserialize, Serialize};
+
 /// One radiosity per receiver and band, W/m^2. Row-major: receiver i, band c at `i * bands + c`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Radiosity {
     /// Number of bands.
     pub bands: usize,

@@ -6,7 +6,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 /// Infinite for a tail of 0 or without degrees of freedom.
 pub fn t_quantile(upper_tail: f64, dof: f64) -> f64 {
     match (StudentsT::new(0.0, 1.0, dof), upper_tail) {
-        (Ok(_), p) if p == 0.5 => 0.0,
+        (Ok(_), 0.5) => 0.0,
         // The lower tail keeps its digits, 1 - p does not.
         (Ok(t), p) if p > 0.0 && p < 0.5 => -t.inverse_cdf(p),
         (Ok(t), p) if p > 0.5 && p < 1.0 => t.inverse_cdf(1.0 - p),
@@ -44,4 +44,61 @@ pub fn normal_quantile(upper_tail: f64) -> f64 {
 /// Probability that chi-square with `dof` degrees of freedom exceeds `x`; NaN without degrees of freedom.
 pub fn chi_square_upper_tail(x: f64, dof: f64) -> f64 {
     ChiSquared::new(dof).map_or(f64::NAN, |c| c.sf(x.max(0.0)))
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Digits from 40-digit arithmetic (mpmath: incomplete beta, incomplete gamma, erfc).
+    fn close(got: f64, known: f64) {
+        assert!((got / known - 1.0).abs() < 1e-9, "{got:e} is not {known:e}");
+    }
+
+    #[test]
+    fn t_quantiles() {
+        close(t_quantile(0.025, 1.0), 12.7062047361747);
+        close(t_quantile(0.025, 7.0), 2.36462425159279);
+        close(t_quantile(0.025, 15.0), 2.13144954555978);
+        close(t_quantile(0.0125, 15.0), 2.48987970347989);
+        close(t_quantile(0.3, 4.0), 0.568649063049705);
+        close(t_quantile(0.7, 4.0), -0.568649063049705);
+        close(two_sided_t(0.95, 31.0), 2.03951344639641);
+        assert_eq!(t_quantile(0.5, 3.0), 0.0);
+        assert_eq!((t_quantile(0.0, 3.0), t_quantile(1.0, 3.0)), (f64::INFINITY, f64::NEG_INFINITY));
+        assert_eq!(t_quantile(0.025, 0.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn t_quantiles_of_family_wise_tails() {
+        close(t_quantile(1e-6, 15.0), 7.46438494009637);
+        close(t_quantile(1e-12, 7.0), 104.021829262647);
+        close(t_quantile(1e-12, 15.0), 20.6386073102161);
+        close(t_quantile(1e-12, 31.0), 11.2002071928848);
+    }
+
+    #[test]
+    fn tails() {
+        close(t_upper_tail(2.0, 10.0), 0.0366940173853702);
+        close(t_upper_tail(7.5, 15.0), 9.44426930235403e-07);
+        close(t_upper_tail(30.0, 15.0), 4.15740359716247e-15);
+        close(normal_upper_tail(1.0), 0.158655253931457);
+        close(normal_upper_tail(10.0), 7.61985302416053e-24);
+        close(normal_upper_tail(30.0), 4.90671392714819e-198);
+        close(chi_square_upper_tail(3.84, 1.0), 0.0500435212487051);
+        close(chi_square_upper_tail(18.307, 10.0), 0.0500005890913981);
+        close(chi_square_upper_tail(200.0, 100.0), 1.17845007209794e-08);
+        close(chi_square_upper_tail(500.0, 100.0), 1.72012100536954e-54);
+        close(chi_square_upper_tail(80.0, 100.0), 0.929664933340605);
+        assert!(t_upper_tail(1.0, 0.0).is_nan() && chi_square_upper_tail(1.0, 0.0).is_nan());
+        assert_eq!(chi_square_upper_tail(-1.0, 2.0), 1.0);
+    }
+
+    #[test]
+    fn normal_quantiles() {
+        close(normal_quantile(0.025), 1.95996398454005);
+        close(normal_quantile(0.4), 0.2533471031358);
+        close(normal_quantile(1e-6), 4.7534243088229);
+        close(normal_quantile(1e-15), 7.941345326171);
+        assert_eq!((normal_quantile(0.0), normal_quantile(1.0)), (f64::INFINITY, f64::NEG_INFINITY));
+    }
 }

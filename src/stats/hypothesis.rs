@@ -33,3 +33,28 @@ fn doubt(mean: f64, std_err: f64, tail: impl Fn(f64) -> f64) -> f64 {
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn known_p_values() {
+        assert!((t_p_value(1.0, 0.5, 10.0) - 0.0733880347707404).abs() < 1e-12);
+        assert_eq!(t_p_value(1.0, 0.5, 10.0), t_p_value(-1.0, 0.5, 10.0));
+        assert!((z_p_value(-1.0, 1.0) - 0.317310507862914).abs() < 1e-9);
+        assert!((chi_square_p_value(10.0, 5.0) - 0.0752352461465122).abs() < 1e-12);
+    }
+
+    #[test]
+    fn no_error_leaves_no_doubt() {
+        assert_eq!((t_p_value(0.0, 0.0, 3.0), z_p_value(0.0, 0.0), z_p_value(1e-9, 0.0)), (1.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn independent_errors_add_in_squares() {
+        assert_eq!(z_difference(10.0, 3.0, 0.0, 4.0), 2.0);
+        assert_eq!(z_difference(1.0, 0.0, 1.0, 0.0), 0.0);
+        assert_eq!(z_difference(0.0, 0.0, 1.0, 0.0), f64::NEG_INFINITY);
+    }
+}

@@ -68,3 +68,83 @@ fn upper_bound(hits: u64, misses: u64, tail: f64) -> f64 {
 fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
     Beta::new(a, b).map_or(f64::NAN, |beta| beta.inverse_cdf(p))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stats::test_random::Random;
+
+    fn close(got: f64, known: f64) {
+        assert!((got / known - 1.0).abs() < 1e-7, "{got:e} is not {known:e}");
+    }
+
+    #[test]
+    fn mean_of_a_textbook_sample() {
+        // Mean 5, sd sqrt(32/7), n = 8, t(0.975, 7) = 2.36462.
+        let e = mean_interval(&[2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0], 0.95);
+        close(e.value, 5.0);
+        close(e.std_err.unwrap(), (32.0f64 / 56.0).sqrt());
+        close(e.high - e.value, 2.36462425159279 * (32.0f64 / 56.0).sqrt());
+        close(e.value - e.low, e.high - e.value);
+    }
+
+    #[test]
+    fn one_replicate_says_nothing_of_its_error() {
+        let e = mean_interval(&[3.0], 0.95);
+        assert_eq!((e.value, e.std_err, e.low, e.high), (3.0, None, f64::NEG_INFINITY, f64::INFINITY));
+    }
+
+    #[test]
+    fn the_jackknife_of_a_mean_is_the_mean_and_of_the_plug_in_variance_the_unbiased_one() {
+        let x = [1.0, 4.0, 6.0, 13.0];
+        let n = x.len() as f64;
+        let without = |f: &dyn Fn(&[f64]) -> f64| -> Vec<f64> {
+            (0..x.len()).map(|k| f(&[&x[..k], &x[k + 1..]].concat())).collect()
+        };
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+        assert_eq!(jackknife_interval(mean(&x), &without(&mean), 0.95), mean_interval(&x, 0.95));
+        let plug_in = |v: &[f64]| v.iter().map(|a| (a - mean(v)).powi(2)).sum::<f64>() / v.len() as f64;
+        close(mean(&pseudo_values(plug_in(&x), &without(&plug_in))), plug_in(&x) * n / (n - 1.0));
+    }
+
+    /// Digits from sums of binomial terms in 40-digit arithmetic; 5 of 20 is the textbook's (0.0866, 0.4910).
+    #[test]
+    fn known_binomial_intervals() {
+        let known = [
+            (5, 20, 0.95, 0.0865714691014345, 0.491045871707958),
+            (1, 65536, 0.95, 3.86319016935947e-07, 8.50135660124633e-05),
+            (45, 2097152, 0.9993, 1.22460275131892e-05, 3.45879195243276e-05),
+            (3, 1048576, 0.99999999, 2.96559507243525e-09, 2.60930982878405e-05),
+            (19, 20, 0.95, 0.751267237227972, 0.99873491050205),
+        ];
+        for (hits, trials, confidence, low, high) in known {
+            let (l, h) = binomial_interval(hits, trials, confidence);
+            close(l, low);
+            close(h, high);
+        }
+        let (l, h) = binomial_interval(0, 65536, 0.95);
+        assert_eq!(l, 0.0);
+        close(h, 5.6286249336939e-05);
+        let (l, h) = binomial_interval(20, 20, 0.95);
+        close(l, 0.831566529016915);
+        assert_eq!(h, 1.0);
+        assert_eq!(binomial_interval(0, 0, 0.95), (0.0, 1.0));
+    }
+
+    /// t intervals miss a normal mean in 5 % of cases, each side alike.
+    #[test]
+    fn t_intervals_cover_as_they_say() {
+        let mut random = Random(1);
+        for r in [8, 16, 32] {
+            let (mut above, mut below) = (0, 0);
+            for _ in 0..10_000 {
+                let x: Vec<f64> = (0..r).map(|_| 3.0 + random.normal()).collect();
+                let e = mean_interval(&x, 0.95);
+                above += usize::from(e.low > 3.0);
+                below += usize::from(e.high < 3.0);
+            }
+            // 250 expected, sd 16.
+            assert!((200..300).contains(&above) && (200..300).contains(&below), "R {r}: {above} {below}");
+        }
+    }
+}

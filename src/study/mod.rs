@@ -1,5 +1,11 @@
-//! Conducts whole runs: check, compare, demo. Emits a finished record that reports only format.
+//! Conducts whole runs: reference, solve, check, demo. Hands finished records to reports, which only format.
 
+mod judge;
 mod record;
+mod run;
+mod session;
 
+pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, judge};
 pub use record::{Record, Setting};
+pub use run::{SolveOutcome, SolveRequest, reference, solve};
+pub use session::Session;

@@ -3,9 +3,10 @@
 use crate::metrics::{Comparison, Decision};
 use crate::scene::Stage;
 use crate::solution::Radiosity;
+use serde::{Deserialize, Serialize};
 
 /// A finished comparison or check.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
     /// Scene at the judged state.
     pub stage: Stage,
@@ -32,7 +33,7 @@ pub struct Record {
 }
 
 /// One effective setting.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setting {
     /// Name as on the command line.
     pub name: String,

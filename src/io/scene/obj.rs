@@ -1,6 +1,7 @@
 //! Wavefront OBJ: vertices, faces, groups and materials, with the line of every mistake.
 
 use super::check::LARGEST;
+use super::polygon::MAX_CORNERS;
 use crate::math::DVec3;
 use std::collections::{BTreeMap, HashMap};
 
@@ -159,6 +160,9 @@ impl Obj {
         let count = self.corners.len() as u32 - start;
         if count == 0 {
             return fault(line, "the face has no corners", "give three or more vertex numbers");
+        }
+        if count as usize > MAX_CORNERS {
+            return fault(line, format!("the face has {count} corners"), "split it into smaller ones");
         }
         self.faces.push(ObjFace { start, count, line, material, group });
         Ok(())

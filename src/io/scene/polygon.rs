@@ -14,6 +14,9 @@ pub(super) const CONVEX_TOLERANCE: f64 = 1e-6;
 /// Smallest area, as a share of the diameter squared.
 pub(super) const AREA_TOLERANCE: f64 = 1e-12;
 
+/// Most corners of a polygon: checks look at all pairs.
+pub(super) const MAX_CORNERS: usize = 4096;
+
 /// What is wrong with a polygon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Flaw {

@@ -13,6 +13,7 @@ use super::source::Source;
 use super::surfaces::{replacement, surfaces};
 use crate::scene::{Edit, Scene, SceneError, Surface};
 use crate::view::{Photometry, Primaries};
+use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
@@ -119,7 +120,7 @@ fn syntax(source: &Source, e: &toml::de::Error) -> SceneFileError {
         [unknown, known @ ..] if message.starts_with("unknown field") => {
             let mend = match nearest(unknown, known.iter().copied()) {
                 Some(near) => format!("did you mean \"{near}\"?"),
-                None => "leave it out; the scene format is described in the README".into(),
+                None => "leave it out; references/scene-format.md lists all keys".into(),
             };
             (Refusal::Key, mend)
         }
@@ -192,12 +193,12 @@ fn edits(
 
 /// Looks at the scene as a whole, in every state.
 fn settle(check: Check, file: &raw::File, mut scene: Scene) -> Checked<Scene> {
-    scene.settle_replacements().map_err(|e| at_place(check, file, &e))?;
+    scene.settle_replacements().map_err(|e| at_place(check, file, &scene, &e))?;
     for state in 0..=scene.edits.len() {
         if state > 0 && matches!(scene.edits[state - 1], Edit::Material { .. }) {
             continue;
         }
-        let found = scene.survey(state).map_err(|e| at_place(check, file, &e))?;
+        let found = scene.survey(state).map_err(|e| at_place(check, file, &scene, &e))?;
         for notice in found {
             if !scene.notices.contains(&notice) {
                 scene.notices.push(notice);
@@ -207,8 +208,17 @@ fn settle(check: Check, file: &raw::File, mut scene: Scene) -> Checked<Scene> {
     Ok(scene)
 }
 
+/// The counts, or else the name, of the surface with the most elements.
+fn finest(file: &raw::File, scene: &Scene) -> Option<Range<usize>> {
+    let size =
+        |s: &Surface| s.faces.iter().map(|f| f.patches.count() as u128 * f.elements.count() as u128).sum::<u128>();
+    let (_, table) = scene.surfaces.iter().zip(&file.surface).max_by_key(|(s, _)| size(s))?;
+    let raw = table.get_ref();
+    Some(raw.patches.as_ref().or(raw.elements.as_ref()).map_or_else(|| raw.name.span(), Spanned::span))
+}
+
 /// Finds the line that a fault of the whole scene comes from.
-fn at_place(check: Check, file: &raw::File, e: &SceneError) -> SceneFileError {
+fn at_place(check: Check, file: &raw::File, scene: &Scene, e: &SceneError) -> SceneFileError {
     let edit = |at: usize| file.edit.get(at.wrapping_sub(1)).map(Spanned::span);
     let top = 0..check.source.text.lines().next().map_or(0, str::len);
     let (refusal, span) = match e {
@@ -226,7 +236,7 @@ fn at_place(check: Check, file: &raw::File, e: &SceneError) -> SceneFileError {
         | SceneError::Collapsed { edit: at, .. } => (Refusal::Edit, edit(*at)),
         SceneError::Empty { state: 0 } => (Refusal::Empty, None),
         SceneError::Empty { state } => (Refusal::Empty, edit(*state)),
-        SceneError::TooMany { .. } => (Refusal::Counts, None),
+        SceneError::TooMany { .. } => (Refusal::Counts, finest(file, scene)),
         SceneError::NoSuchState { .. } => (Refusal::Edit, None),
     };
     let text = e.to_string();

@@ -35,7 +35,7 @@ impl Source {
     /// The block of a scene file that a stretch of text lies in: `surface "floor"`, `edit 2`; empty outside.
     pub(super) fn block(&self, span: &Range<usize>) -> String {
         let mut start = 0;
-        let mut found: Option<(usize, &str, &str)> = None;
+        let mut found: Option<(usize, &str)> = None;
         let mut edits = 0;
         for line in self.text.split_inclusive('\n') {
             if start > span.start {
@@ -43,16 +43,21 @@ impl Source {
             }
             let head = line.split('#').next().unwrap_or_default().trim();
             if head.starts_with('[') && head.ends_with(']') && !head.contains(',') && !head.contains('=') {
-                let known = BLOCKS.iter().find(|(header, _)| head.replace(' ', "") == *header);
-                found = known.map(|(header, word)| (start, *header, *word));
-                edits += usize::from(found.is_some_and(|f| f.2 == "edit"));
+                let header = head.replace(' ', "");
+                let known = BLOCKS.iter().find(|(h, _)| header == *h);
+                edits += usize::from(known.is_some_and(|k| k.1 == "edit"));
+                // A table within the block ([material.specular]) does not end it.
+                let within = found.is_some_and(|(_, word)| header.starts_with(&format!("[{word}.")));
+                if !within {
+                    found = known.map(|(_, word)| (start, *word));
+                }
             }
             start += line.len();
         }
         match found {
             None => String::new(),
-            Some((_, _, "edit")) => format!("edit {edits}"),
-            Some((at, _, word)) => match name_in_block(&self.text[at..]) {
+            Some((_, "edit")) => format!("edit {edits}"),
+            Some((at, word)) => match name_in_block(&self.text[at..]) {
                 Some(name) => format!("{word} \"{name}\""),
                 None => word.to_string(),
             },

@@ -19,17 +19,18 @@ pub fn form_factors(tracer: &Tracer, params: &Params, seed: u64, progress: &(dyn
     cast(tracer, &patch_emitters(tracer.stage()), stream, &plan, &|_| 0.0, progress)
 }
 
-/// Casts and solves; standard errors by leaving out one randomisation at a time.
+/// Casts and solves; standard errors by leaving out one randomisation at a time. Also returns the form factors.
 pub fn solve(
     tracer: &Tracer,
     params: &Params,
     seed: u64,
     progress: &(dyn Fn(u64) + Sync),
-) -> Result<(Radiosity, MethodInfo), SolverError> {
+) -> Result<(Radiosity, MethodInfo, FormFactors), SolverError> {
     let counts = form_factors(tracer, params, seed, progress).counts;
-    let (mut radiosity, info) = solve_with(tracer.stage(), &counts.form_factors())?;
+    let matrix = counts.form_factors();
+    let (mut radiosity, info) = solve_with(tracer.stage(), &matrix)?;
     radiosity.std_err = Some(jackknife_std_err(tracer.stage(), &counts, &radiosity)?);
-    Ok((radiosity, info))
+    Ok((radiosity, info, matrix))
 }
 
 /// Solves the patch system of given form factors exactly.

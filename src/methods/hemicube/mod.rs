@@ -24,5 +24,5 @@ pub use params::{Delta, Params};
 pub use project::{FACES, Face};
 pub use raster::Item;
 pub use row::{Hemicube, Lost};
-pub use solve::{form_factors, solve, solve_with, stand};
+pub use solve::{element_form_factors, form_factors, solve, solve_with, stand};
 pub use world::{World, centre};

@@ -6,7 +6,7 @@ use super::world::{World, centre};
 use super::{HemicubeError, Params};
 use crate::math::{DVec3, Frame};
 use crate::methods::{MethodInfo, PatchVectors, RowSums};
-use crate::scene::{Patch, Stage};
+use crate::scene::{Element, Patch, Stage};
 use crate::solution::{FormFactors, Radiosity};
 use crate::solver::gauss_seidel;
 use rayon::prelude::*;
@@ -27,16 +27,38 @@ pub fn stand(patch: &Patch, params: &Params) -> Option<(DVec3, Frame)> {
 /// Form factors of all patches by hemi-cubes at their centres; zero entries not stored, no standard errors
 /// [CG85 eq. 7]. Calls `progress` with the number of rows done.
 pub fn form_factors(stage: &Stage, params: &Params, progress: &dyn Fn(usize)) -> Result<FormFactors, HemicubeError> {
+    let stands: Vec<_> = stage.patches.iter().map(|p| stand(p, params)).collect();
+    rows(stage, &stands, params, progress)
+}
+
+/// Form factors from all elements to all patches, by hemi-cubes at the elements' centres: elements x patches.
+pub fn element_form_factors(stage: &Stage, params: &Params) -> Result<FormFactors, HemicubeError> {
+    let of = |e: &Element| {
+        let patch = &stage.patches[e.patch as usize];
+        let (corners, region) = (e.corners.clone(), e.region.clone());
+        stand(&Patch { corners, region, area: e.area, ..patch.clone() }, params)
+    };
+    let stands: Vec<_> = stage.elements.iter().map(of).collect();
+    rows(stage, &stands, params, &|_| ())
+}
+
+/// One row per stand; empty where nothing stands.
+fn rows(
+    stage: &Stage,
+    stands: &[Option<(DVec3, Frame)>],
+    params: &Params,
+    progress: &dyn Fn(usize),
+) -> Result<FormFactors, HemicubeError> {
     let params = params.validated()?;
     let world = World::new(stage);
     let table = DeltaTable::new(params.resolution, params.delta);
     let idle = Pool::default();
     let mut f = FormFactors::from_exact_rows(Vec::new());
     f.n = stage.patch_count();
-    for block in stage.patches.chunks(ROWS_PER_BLOCK) {
-        let row = |patch: &Patch| match stand(patch, &params) {
+    for block in stands.chunks(ROWS_PER_BLOCK) {
+        let row = |stand: &Option<(DVec3, Frame)>| match stand {
             None => Vec::new(),
-            Some((eye, frame)) => idle.lend(|| Hemicube::new(&world, &table), |cube| cube.row(eye, &frame).0),
+            Some((eye, frame)) => idle.lend(|| Hemicube::new(&world, &table), |cube| cube.row(*eye, frame).0),
         };
         let rows: Vec<Vec<(u32, f64)>> = block.par_iter().map(row).collect();
         rows.into_iter().for_each(|row| append(&mut f, row));

@@ -1,0 +1,105 @@
+//! `etalon demo`: the whole chain on the Cornell box.
+
+use super::inputs;
+use super::reference::{MARKER, explain_failures};
+use super::report::write_report;
+use crate::cli::args::Kernel;
+use crate::cli::console::Console;
+use crate::cli::exit::{self, Failure};
+use crate::cli::values::StateChoice;
+use crate::estimate::Plan;
+use crate::io::{BandNames, SolutionFormat, atomic, write_folder, write_solution};
+use crate::methods::Method;
+use crate::metrics::{Limits, Verdict};
+use crate::reference::Options;
+use crate::report::text_summary;
+use crate::study::{self, Against, Question, Receivers, Record, Setting, SolveRequest, judge};
+use serde_json::json;
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::Instant;
+
+const SCENE: &str = "builtin:cornell-box";
+const METHOD: &str = "hemicube:resolution=100";
+/// Limit on eq. 7 that the demo puts to the hemi-cube.
+const MAX_RMS: f64 = 0.01;
+
+pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
+    let begin = Instant::now();
+    let kind = inputs::kernel_kind(kernel);
+    atomic::create_folder(output)?;
+    let stage = inputs::stage_of(&inputs::scene(SCENE, None, console)?, StateChoice::Final)?;
+    let session = inputs::session(&stage, kind, console)?;
+    let options = Options { plan: Plan::default(), seed: 0 };
+    let (stored, _) = study::reference(&session, &options, console)?;
+    let judged_in = begin.elapsed().as_secs_f64();
+    write_folder(&output.join("reference"), &stored.files(judged_in), MARKER)?;
+    explain_failures(&stored, console);
+
+    let method: Method = METHOD.parse()?;
+    let request = SolveRequest { method, form_factors: None, seed: 0, per_element: false };
+    let outcome = study::solve(&session, &request, console)?;
+    console.end();
+    let receivers = Receivers::patches(&stage);
+    let (hash, present) = (stage.hash(), receivers.present());
+    let names = BandNames { scene: &stage.name, scene_hash: &hash, bands: &stage.photometry.bands, present: &present };
+    let solution = output.join("hemicube.csv");
+    inputs::write(&solution, &write_solution(&outcome.radiosity, names, SolutionFormat::Csv))?;
+
+    let limits = Limits { max_rms: Some(MAX_RMS), max_top1: None };
+    let question = Question { limits: Some(limits), confidence: 0.95, reflected: true, per_element: false };
+    let against = Against::Reference(Box::new(stored));
+    let judgement = judge(&outcome.radiosity, &against, None, &receivers, &question)?;
+    let verdict = judgement.decision.as_ref().map(|d| d.verdict);
+    let Against::Reference(stored) = against else { unreachable!("made three lines above") };
+    let record = Record {
+        reference: stored.patches.mean(),
+        solution: outcome.radiosity,
+        solution_name: method.to_string(),
+        comparison: judgement.comparison,
+        decision: judgement.decision,
+        truth: stored.provenance.truth.name().into(),
+        settings: settings(&options, &method),
+        provenance: super::check::provenance(&Against::Reference(stored), &stage),
+        notices: Vec::new(),
+        replay: replay(output),
+        stage: stage.clone(),
+    };
+    let page = write_report(output, &record, kind, console)?;
+    let seconds = begin.elapsed().as_secs_f64();
+    let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    let text = format!(
+        "{}\n\nreport: {}\n(the whole chain took {seconds:.1} s, {judged_in:.1} s of it for the reference)",
+        text_summary(&record, colour).trim_end(),
+        page.display()
+    );
+    let verdict = verdict.unwrap_or(Verdict::Inconclusive);
+    console.result(
+        &text,
+        &json!({ "verdict": verdict, "report": page, "rms": record.comparison.rms, "seconds": seconds }),
+    );
+    Ok(exit::DONE)
+}
+
+fn settings(options: &Options, method: &Method) -> Vec<Setting> {
+    let setting = |name: &str, value: String, is_default: bool| Setting { name: name.into(), value, is_default };
+    vec![
+        setting("scene", SCENE.into(), true),
+        setting("--method", method.to_string(), true),
+        setting("--rays", options.plan.rays.to_string(), true),
+        setting("--randomisations", options.plan.randomisations.to_string(), true),
+        setting("--seed", options.seed.to_string(), true),
+        setting("--max-rms", MAX_RMS.to_string(), false),
+        setting("--reflected", "true".into(), false),
+        setting("--confidence", "0.95".into(), true),
+    ]
+}
+
+fn replay(output: &Path) -> String {
+    let folder = output.display();
+    format!(
+        "etalon reference {SCENE} -o {folder}/reference && etalon solve {SCENE} --method {METHOD} -o \
+         {folder}/hemicube.csv && etalon check {folder}/hemicube.csv --reference {folder}/reference --reflected \
+         --max-rms {MAX_RMS} --report {folder}"
+    )
+}

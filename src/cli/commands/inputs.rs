@@ -1,0 +1,97 @@
+//! What several commands read: scenes, states, kernels, plans, matrices.
+
+use crate::cli::args::{Kernel, RayArgs, SceneArgs};
+use crate::cli::console::Console;
+use crate::cli::exit::Failure;
+use crate::cli::values::StateChoice;
+use crate::estimate::Plan;
+use crate::io::atomic;
+use crate::io::scene::{SceneOptions, open_scene};
+use crate::raycast::KernelKind;
+use crate::scene::{Scene, Stage};
+use crate::study::Session;
+use std::path::Path;
+
+/// The kernel asked for.
+pub fn kernel_kind(kernel: Kernel) -> KernelKind {
+    match kernel {
+        Kernel::Auto => KernelKind::Auto,
+        Kernel::Embree => KernelKind::Embree,
+        Kernel::Builtin => KernelKind::Builtin,
+        Kernel::Embree4Rs => KernelKind::Embree4Rs,
+    }
+}
+
+/// Reads a scene and lays out one state of it.
+pub fn stage(args: &SceneArgs, console: &Console) -> Result<Stage, Failure> {
+    let scene = scene(&args.scene, args.max_edge, console)?;
+    stage_of(&scene, args.state)
+}
+
+/// Reads a scene, telling its notices.
+pub fn scene(spec: &str, max_edge: Option<f64>, console: &Console) -> Result<Scene, Failure> {
+    if max_edge.is_some_and(|e| !(e > 0.0 && e.is_finite())) {
+        return Err(Failure::input("--max-edge must be a length above 0, in metres"));
+    }
+    let scene = open_scene(spec, &SceneOptions { max_edge_override: max_edge })?;
+    scene.notices.iter().for_each(|n| console.notice(n));
+    Ok(scene)
+}
+
+/// Lays out a state.
+pub fn stage_of(scene: &Scene, choice: StateChoice) -> Result<Stage, Failure> {
+    let state = match choice {
+        StateChoice::Initial => 0,
+        StateChoice::Final => scene.edits.len(),
+        StateChoice::After(k) => scene.state_named(&k.to_string())?,
+    };
+    Ok(scene.at(state)?)
+}
+
+/// Opens the kernels, and says when the fast one is missing.
+pub fn session<'a>(stage: &'a Stage, kind: KernelKind, console: &Console) -> Result<Session<'a>, Failure> {
+    let session = Session::open(stage, kind)?;
+    let kernel = session.kernel();
+    session.notice().into_iter().for_each(|n| console.notice(n));
+    console.detail(&format!("kernel {} {}", kernel.name, kernel.version));
+    console.detail(if session.is_enclosure() { "the scene is closed" } else { "the scene is open" });
+    Ok(session)
+}
+
+/// The plan that the ray options describe.
+pub fn plan(rays: &RayArgs) -> Result<Plan, Failure> {
+    if rays.target_error.is_some_and(|t| t.0 == 0.0) {
+        return Err(Failure::input("--target-error must be above 0: no number of rays reaches 0"));
+    }
+    Ok(Plan {
+        rays: rays.rays,
+        randomisations: rays.randomisations,
+        target_error: rays.target_error.map(|t| t.0),
+        max_time: rays.max_time.map(|t| t.0),
+    })
+}
+
+/// Writes a result file.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    atomic::write(path, bytes).map_err(|e| Failure::input(e.to_string()).at(path.display().to_string()))
+}
+
+/// Fails before the work if a result could not be written after it.
+pub fn check_writable(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let complain = |why: &str| Err(Failure::input(format!("{}: {why}", path.display())).at(path.display().to_string()));
+    if path.is_dir() {
+        return complain("is a folder; name a file");
+    }
+    if !folder.is_dir() {
+        return complain("its folder does not exist; make it first");
+    }
+    Ok(())
+}
+
+/// "1 234 567", for people.
+pub fn thousands(n: u64) -> String {
+    let digits = n.to_string();
+    let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().map(|g| std::str::from_utf8(g).unwrap_or("")).collect();
+    groups.join(" ")
+}

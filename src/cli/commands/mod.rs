@@ -1,0 +1,32 @@
+//! One file per command: plan, run, print.
+
+mod check;
+mod demo;
+mod form_factors;
+mod inputs;
+mod machine;
+mod reference;
+mod report;
+mod scene;
+mod solve;
+
+use super::args::{Cli, Command};
+use super::console::Console;
+use super::exit::Failure;
+
+/// Runs a command; returns its exit code.
+pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
+    let kernel = inputs::kernel_kind(cli.global.kernel);
+    match &cli.command {
+        Command::Scene(command) => scene::run(command, console),
+        Command::FormFactors(args) => form_factors::run(args, kernel, console),
+        Command::Reference(args) => reference::run(args, kernel, console),
+        Command::Solve(args) => solve::run(args, kernel, console),
+        Command::Compare(args) => check::compare(args, cli.global.kernel, console),
+        Command::Check(args) => check::check(args, cli.global.kernel, console),
+        Command::Report { directory } => report::run(directory, kernel, console),
+        Command::Demo { output } => demo::run(output, cli.global.kernel, console),
+        Command::Setup(command) => machine::setup(command, console),
+        Command::Doctor => machine::doctor(console),
+    }
+}

@@ -1,0 +1,65 @@
+//! `etalon solve`
+
+use super::inputs;
+use crate::cli::args::SolveArgs;
+use crate::cli::console::Console;
+use crate::cli::exit::{self, Failure};
+use crate::cli::values::PerLevel;
+use crate::io::{BandNames, MatrixFormat, SolutionFormat, read_form_factors, write_form_factors, write_solution};
+use crate::methods::Method;
+use crate::raycast::KernelKind;
+use crate::study::{self, Receivers, SolveRequest};
+use serde_json::json;
+
+pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8, Failure> {
+    let format = SolutionFormat::of(&args.output)?;
+    inputs::check_writable(&args.output)?;
+    let matrix_format = args.save_form_factors.as_deref().map(MatrixFormat::of).transpose()?;
+    args.save_form_factors.as_deref().map(inputs::check_writable).transpose()?;
+    let method = method(args)?;
+    let stage = inputs::stage(&args.scene, console)?;
+    let given = args.form_factors.as_deref().map(|f| read_form_factors(f, stage.patch_count())).transpose()?;
+    let session = inputs::session(&stage, kernel, console)?;
+    let per_element = args.per == PerLevel::Element;
+    let request = SolveRequest { method, form_factors: given.as_ref(), seed: args.seed, per_element };
+    let outcome = study::solve(&session, &request, console)?;
+    console.end();
+    let receivers = if per_element { Receivers::elements(&stage) } else { Receivers::patches(&stage) };
+    let (hash, present) = (stage.hash(), receivers.present());
+    let names = BandNames { scene: &stage.name, scene_hash: &hash, bands: &stage.photometry.bands, present: &present };
+    inputs::write(&args.output, &write_solution(&outcome.radiosity, names, format))?;
+    if let (Some(path), Some(format)) = (&args.save_form_factors, matrix_format) {
+        inputs::write(path, &write_form_factors(&outcome.form_factors, format, false))?;
+    }
+    let sums = outcome.info.row_sums;
+    let text = format!(
+        "{method} on {} ({} patches): {} iterations, residual {:.1e}, row sums {:.6} to {:.6}; written to {}",
+        stage.name,
+        stage.patch_count(),
+        outcome.info.iterations.iter().max().unwrap_or(&0),
+        outcome.info.residual.iter().copied().fold(0.0, f64::max),
+        sums.min,
+        sums.max,
+        args.output.display(),
+    );
+    let json = json!({
+        "scene": stage.name, "scene_hash": hash, "method": method.to_string(), "patches": stage.patch_count(),
+        "iterations": outcome.info.iterations, "residual": outcome.info.residual,
+        "row_sums": { "min": sums.min, "max": sums.max, "mean": sums.mean }, "output": args.output,
+    });
+    console.result(&text, &json);
+    Ok(exit::DONE)
+}
+
+/// The method with `--rays` filled in where `--method` leaves it open.
+fn method(args: &SolveArgs) -> Result<Method, Failure> {
+    let mut method: Method = args.method.parse()?;
+    match (&mut method, args.rays) {
+        (Method::Gather(p), Some(rays)) if !args.method.contains("rays=") => p.rays = rays,
+        (Method::Hemicube(_), Some(_)) => {
+            return Err(Failure::input("--rays is for ray-cast methods; hemicube takes hemicube:resolution=N"));
+        }
+        _ => {}
+    }
+    Ok(method)
+}

@@ -1,0 +1,282 @@
+//! The pictures of a record: painted, captioned, with the colour bars that belong to them.
+
+use super::ReportError;
+use super::artifact::check_shape;
+use super::asked::Level;
+use super::format::{round_number, significant};
+use crate::render::{
+    Exposure, Field, LinearRgb, Raster, Scale, View, Visibility, difference, in_standard_errors, luminance,
+    luminance_std_err, paint, relative_difference, to_srgb8,
+};
+use crate::study::Record;
+
+/// Colours along a drawn bar.
+const BAR_STOPS: usize = 25;
+/// A difference picture in standard errors reaches at least this far: what lies within is no news.
+const LEAST_Z: f64 = 3.0;
+
+/// The pictures through one camera.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViewFigures {
+    /// Name of the camera.
+    pub camera: String,
+    /// File-name stem of its pictures.
+    pub stem: String,
+    /// True if the scene has no camera and this one was fitted.
+    pub fitted: bool,
+    /// Pictures in order of display.
+    pub figures: Vec<Figure>,
+    /// Where the worst patches show.
+    pub marks: Vec<Mark>,
+}
+
+/// One picture with its words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// `reference`, `candidate`, `difference`, `relative`, `std_err` or `z`.
+    pub kind: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What is shown, and how.
+    pub caption: String,
+    /// The pixels.
+    pub raster: Raster,
+    /// The colour bar; `None` for pictures in natural colours.
+    pub bar: Option<ColourBar>,
+}
+
+/// A colour bar.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ColourBar {
+    /// Colours at equal steps from left to right, as `#rrggbb`.
+    pub colours: Vec<String>,
+    /// (place in percent, label).
+    pub ticks: Vec<(String, String)>,
+    /// Unit of the labels.
+    pub unit: &'static str,
+}
+
+/// Where one of the worst patches shows in the pictures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark {
+    /// Rank, 1 for the worst.
+    pub rank: usize,
+    /// Number of the patch, or of the element where elements are judged.
+    pub number: usize,
+    /// Pixels from the left.
+    pub x: f64,
+    /// Pixels from the top.
+    pub y: f64,
+}
+
+/// What is painted, by patch, with the words that go with it: the same for every camera.
+struct Plate {
+    kind: &'static str,
+    title: &'static str,
+    caption: String,
+    palette: Vec<Option<LinearRgb>>,
+    bar: Option<ColourBar>,
+}
+
+/// All pictures of a record, one set for each view.
+///
+/// # Errors
+/// [`ReportError::Shape`] where reference or solution do not belong to the scene.
+pub fn figures(record: &Record, views: &[View]) -> Result<Vec<ViewFigures>, ReportError> {
+    if views.is_empty() {
+        return Ok(Vec::new());
+    }
+    check_shape(record)?;
+    let plates = plates(record);
+    let stems = stems(views);
+    let view = |(v, stem): (&View, String)| ViewFigures {
+        camera: v.visibility.camera().name.clone(),
+        stem,
+        fitted: v.fitted,
+        figures: plates.iter().map(|p| print(p, &v.visibility)).collect(),
+        marks: marks(record, &v.visibility),
+    };
+    Ok(views.iter().zip(stems).map(view).collect())
+}
+
+fn print(plate: &Plate, visibility: &Visibility) -> Figure {
+    Figure {
+        kind: plate.kind,
+        title: plate.title,
+        caption: plate.caption.clone(),
+        raster: paint(visibility, &plate.palette),
+        bar: plate.bar.clone(),
+    }
+}
+
+fn plates(record: &Record) -> Vec<Plate> {
+    let (stage, photometry) = (&record.stage, &record.stage.photometry);
+    let areas = stage.areas();
+    let reference = luminance(photometry, &record.reference);
+    let solution = luminance(photometry, &record.solution);
+    let wrong = difference(&reference, &solution);
+    let relative = relative_difference(&reference, &solution);
+    let noise = luminance_std_err(photometry, &record.reference);
+    let z = in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution));
+    let mut all = natural(record, &reference, &areas);
+    let scale = Scale::symmetric(&wrong, &areas, 0.0);
+    all.push(false_colour("difference", "Signed difference", WRONG, &wrong, scale, WATTS));
+    let scale = Scale::symmetric(&relative, &areas, 0.0);
+    all.push(false_colour("relative", "Relative difference", RELATIVE, &relative, scale, PERCENT));
+    if !noise.is_blank() {
+        let scale = Scale::from_zero(&noise, &areas);
+        all.push(false_colour("std_err", "Standard error of the reference", NOISE, &noise, scale, WATTS));
+        let scale = Scale::symmetric(&z, &areas, LEAST_Z);
+        all.push(false_colour("z", "Difference in standard errors", IN_ERRORS, &z, scale, ERRORS));
+    }
+    all
+}
+
+/// (unit, what a value is multiplied by for its label).
+type Unit = (&'static str, f64);
+const WATTS: Unit = ("W/m\u{b2}, luminance", 1.0);
+const PERCENT: Unit = ("% of the reference", 100.0);
+const ERRORS: Unit = ("standard errors", 1.0);
+
+const WRONG: &str = "Solution minus reference: red where the solution is too bright, blue where it is too dark.";
+const RELATIVE: &str = "The same as a share of what the reference has there: errors in dark corners show as clearly as \
+                        those in the light.";
+const NOISE: &str = "How well the reference itself is known.";
+const IN_ERRORS: &str =
+    "Differences against the noise: what stays within two or three is no evidence of an error in the solution.";
+
+/// Reference and solution as a camera would show them.
+fn natural(record: &Record, luminances: &[f64], areas: &[f64]) -> Vec<Plate> {
+    let stage = &record.stage;
+    let is_emitter: Vec<bool> = (0..stage.patch_count()).map(|i| stage.emission(i).iter().any(|e| *e > 0.0)).collect();
+    let exposure = Exposure::fit(&stage.photometry, luminances, areas, &is_emitter);
+    let shown = format!(
+        "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
+         the reflecting area stays below); lamps may burn out.",
+        significant(exposure.white_luminance, 3)
+    );
+    let palette = |r: &crate::solution::Radiosity| (0..r.len()).map(|i| Some(exposure.display(r.of(i)))).collect();
+    let plate =
+        |kind, title, caption, radiosity| Plate { kind, title, caption, palette: palette(radiosity), bar: None };
+    vec![
+        plate("reference", "Reference", shown, &record.reference),
+        plate("candidate", "Solution", "The same exposure as the reference.".into(), &record.solution),
+    ]
+}
+
+fn false_colour(kind: &'static str, title: &'static str, what: &str, field: &Field, scale: Scale, unit: Unit) -> Plate {
+    let beyond = if scale.beyond > 0.0 {
+        format!(
+            " {} % of the area lies beyond the range and has its end colours.",
+            significant(100.0 * scale.beyond, 2)
+        )
+    } else {
+        String::new()
+    };
+    let bar = ColourBar {
+        colours: scale.stops(BAR_STOPS).into_iter().map(hex).collect(),
+        ticks: scale
+            .ticks()
+            .iter()
+            .map(|t| (round_number(100.0 * t.at), label(unit.1 * t.value, scale.low())))
+            .collect(),
+        unit: unit.0,
+    };
+    let palette = field.values.iter().map(|v| v.map(|v| scale.colour(v))).collect();
+    Plate { kind, title, caption: format!("{what}{beyond}"), palette, bar: Some(bar) }
+}
+
+/// A mark's label; signed on scales that reach below zero.
+fn label(value: f64, low: f64) -> String {
+    let plus = if value > 0.0 && low < 0.0 { "+" } else { "" };
+    format!("{plus}{}", round_number(value))
+}
+
+fn hex(colour: LinearRgb) -> String {
+    let [r, g, b] = colour.map(to_srgb8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+fn marks(record: &Record, visibility: &Visibility) -> Vec<Mark> {
+    let level = Level::of(record);
+    let numbers: Vec<usize> = record.comparison.worst.iter().map(|w| w.patch).collect();
+    // A number that belongs to no patch is in nobody's sight.
+    let patches: Vec<usize> = numbers.iter().map(|n| level.patch(record, *n).unwrap_or(usize::MAX)).collect();
+    let places = visibility.middles(&patches);
+    let mark =
+        |(k, place): (usize, &Option<(f64, f64)>)| place.map(|(x, y)| Mark { rank: k + 1, number: numbers[k], x, y });
+    places.iter().enumerate().filter_map(mark).collect()
+}
+
+/// File-name stems: the camera's name where it is safe, made different where two are alike.
+fn stems(views: &[View]) -> Vec<String> {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
+    let mut stems: Vec<String> = Vec::new();
+    for (k, view) in views.iter().enumerate() {
+        let plain: String = view.visibility.camera().name.chars().take(60).map(safe).collect();
+        let stem = if plain.is_empty() { "view".to_string() } else { plain };
+        // File systems that ignore case must not merge two cameras.
+        let taken = stems.iter().any(|s| s.eq_ignore_ascii_case(&stem));
+        stems.push(if taken { format!("{stem}-{}", k + 1) } else { stem });
+    }
+    stems
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::testing::{room, tracer};
+    use crate::render::views;
+    use crate::report::testing::record;
+
+    #[test]
+    fn a_record_has_six_pictures_and_four_bars() {
+        let stage = room();
+        let shown = figures(&record(), &views(&tracer(&stage))).expect("figures");
+        let kinds: Vec<_> = shown[0].figures.iter().map(|f| (f.kind, f.bar.is_some())).collect();
+        let expected = [
+            ("reference", false),
+            ("candidate", false),
+            ("difference", true),
+            ("relative", true),
+            ("std_err", true),
+            ("z", true),
+        ];
+        assert_eq!(kinds, expected);
+        let bar = shown[0].figures[2].bar.as_ref().expect("bar");
+        assert_eq!((bar.ticks[2].0.as_str(), bar.ticks[2].1.as_str()), ("50", "0"));
+        assert!(bar.ticks[0].1.starts_with('-') && bar.ticks[4].1.starts_with('+'));
+        assert!(!shown[0].marks.is_empty());
+    }
+
+    #[test]
+    fn a_reference_without_errors_has_no_pictures_of_them() {
+        let stage = room();
+        let mut r = record();
+        r.reference.std_err = None;
+        let shown = figures(&r, &views(&tracer(&stage))).expect("figures");
+        assert_eq!(shown[0].figures.len(), 4);
+    }
+
+    #[test]
+    fn names_of_cameras_cannot_leave_the_folder_or_collide() {
+        let stage = room();
+        let view = views(&tracer(&stage)).remove(0);
+        let named = |name: &str| {
+            let mut camera = view.visibility.camera().clone();
+            (camera.name, camera.size) = (name.into(), [1, 1]);
+            View { visibility: Visibility::cast(&tracer(&stage), &camera, 1), fitted: false }
+        };
+        let stems = stems(&["../a/b", "Main", "main", ""].map(named));
+        assert_eq!(stems, ["___a_b", "Main", "main-3", "view"]);
+    }
+
+    #[test]
+    fn radiosities_of_another_scene_are_refused() {
+        let stage = room();
+        let mut r = record();
+        r.solution.values.truncate(30);
+        let e = figures(&r, &views(&tracer(&stage))).expect_err("shape");
+        assert!(e.to_string().contains("the solution has 30 values"), "{e}");
+    }
+}

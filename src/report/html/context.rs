@@ -1,0 +1,324 @@
+//! Everything the page says, as ready strings: what the template gets, and what `record.json` keeps.
+
+use super::bars::{Bar, axis_end, bar};
+use crate::metrics::Verdict;
+use crate::report::asked::Level;
+use crate::report::figures::{Figure, ViewFigures};
+use crate::report::format::{confidence, count, round_number, significant};
+use crate::report::lines::worst_title;
+use crate::report::{ColourBar, Mark, MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
+use crate::study::Record;
+use serde::Serialize;
+
+#[derive(Debug, Serialize)]
+pub(super) struct Page {
+    pub title: String,
+    pub scene: String,
+    pub state: Option<String>,
+    pub solution: String,
+    pub verdict: VerdictBand,
+    pub facts: Vec<Pair>,
+    pub warnings: Vec<Pair>,
+    pub metrics: Metrics,
+    pub views: Vec<ViewBlock>,
+    pub worst: Worst,
+    pub settings: Vec<SettingRow>,
+    pub provenance: Vec<Pair>,
+    pub notices: Vec<String>,
+    pub replay: String,
+    /// Wall-clock data: the only part that differs between runs on the same input.
+    pub timing: Vec<Pair>,
+    pub program: String,
+}
+
+/// A label with its text.
+#[derive(Debug, Serialize)]
+pub(super) struct Pair {
+    pub label: String,
+    pub text: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct VerdictBand {
+    /// `pass`, `fail`, `open` or `none`: what the template chooses colour and icon by.
+    pub class: &'static str,
+    pub word: &'static str,
+    pub sentence: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Metrics {
+    pub confidence: String,
+    /// Label of the right end of the axis of the bars.
+    pub axis_end: Option<String>,
+    pub rows: Vec<MetricRow>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct MetricRow {
+    pub key: String,
+    pub name: String,
+    pub meaning: &'static str,
+    pub value: String,
+    pub interval: Option<String>,
+    pub limit: Option<String>,
+    pub class: &'static str,
+    pub word: &'static str,
+    pub bar: Option<Bar>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct ViewBlock {
+    pub title: String,
+    pub fitted: bool,
+    pub exr: String,
+    pub figures: Vec<FigureBlock>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct FigureBlock {
+    pub id: String,
+    pub kind: &'static str,
+    pub title: &'static str,
+    pub caption: String,
+    pub alt: String,
+    /// Name of the picture in the report's folder.
+    pub file: String,
+    pub width: u32,
+    pub height: u32,
+    pub bar: Option<BarBlock>,
+    pub marks: Vec<MarkBlock>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct BarBlock {
+    pub stops: Vec<(String, String)>,
+    pub ticks: Vec<(String, String)>,
+    pub unit: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct MarkBlock {
+    pub rank: usize,
+    pub number: usize,
+    pub x: String,
+    pub y: String,
+    pub radius: String,
+    pub font: String,
+    /// False where a worse patch is so near that two labels would cover each other: a dot has to do.
+    pub labelled: bool,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Worst {
+    pub title: String,
+    pub noun: &'static str,
+    pub rows: Vec<WorstRow>,
+    /// True if some of them are out of sight of every camera.
+    pub any_hidden: bool,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct WorstRow {
+    pub rank: usize,
+    pub number: usize,
+    pub surface: String,
+    pub reference: String,
+    pub solution: String,
+    pub difference: String,
+    pub relative: Option<String>,
+    pub in_std_errs: Option<String>,
+    pub hidden: bool,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct SettingRow {
+    pub name: String,
+    pub value: String,
+    pub changed: bool,
+}
+
+/// Name of a picture in the report's folder.
+pub(super) fn picture_name(stem: &str, kind: &str) -> String {
+    format!("{stem}-{kind}.png")
+}
+
+fn pair(label: &str, text: impl Into<String>) -> Pair {
+    Pair { label: label.into(), text: text.into() }
+}
+
+impl Page {
+    pub(super) fn new(record: &Record, views: &[ViewFigures], timing: &[Phase]) -> Self {
+        let head = headline(record);
+        Self {
+            title: format!("{}: {}", head.word, record.stage.name),
+            scene: record.stage.name.clone(),
+            state: (record.stage.state > 0).then(|| format!("after edit {}", record.stage.state)),
+            solution: record.solution_name.clone(),
+            verdict: VerdictBand { class: class(head.verdict), word: head.word, sentence: minus(&head.sentence) },
+            facts: facts(record),
+            warnings: warnings(record).into_iter().map(|(label, text)| Pair { label, text: minus(&text) }).collect(),
+            metrics: metrics(record),
+            views: views.iter().map(view_block).collect(),
+            worst: worst(record, views),
+            settings: record.settings.iter().map(setting).collect(),
+            provenance: record.provenance.iter().map(|(what, value)| pair(what, value)).collect(),
+            notices: record.notices.clone(),
+            replay: record.replay.clone(),
+            timing: timing.iter().map(|p| pair(&p.name, format!("{} s", significant(p.seconds, 3)))).collect(),
+            program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
+        }
+    }
+}
+
+fn class(verdict: Option<Verdict>) -> &'static str {
+    match verdict {
+        Some(Verdict::Pass) => "pass",
+        Some(Verdict::Fail) => "fail",
+        Some(Verdict::Inconclusive) => "open",
+        None => "none",
+    }
+}
+
+fn facts(record: &Record) -> Vec<Pair> {
+    let c = &record.comparison;
+    let truth = match record.truth.as_str() {
+        "patch-system" => "exact solution of the patch system".to_string(),
+        "continuous" => "true mean radiosity of each patch".to_string(),
+        "solution" => "another solution, taken as it is".to_string(),
+        other => other.to_string(),
+    };
+    vec![
+        pair(if Level::of(record) == Level::Patch { "Patches" } else { "Elements" }, count(c.patches)),
+        pair("Bands", record.stage.photometry.bands.join(", ")),
+        pair("Judged against", truth),
+        pair("Confidence", minus(&confidence(c.confidence))),
+    ]
+}
+
+fn metrics(record: &Record) -> Metrics {
+    let lines = metric_lines(record);
+    let end = axis_end(&lines);
+    Metrics {
+        confidence: minus(&confidence(record.comparison.confidence)),
+        axis_end: end.map(|e| minus(&format!("{} %", significant(100.0 * e, 2)))),
+        rows: lines.into_iter().map(|l| metric_row(l, end)).collect(),
+    }
+}
+
+fn metric_row(line: MetricLine, end: Option<f64>) -> MetricRow {
+    MetricRow {
+        bar: end.and_then(|e| bar(&line, e)),
+        class: class(line.verdict),
+        word: line.verdict.map_or("", |v| match v {
+            Verdict::Pass => "kept",
+            Verdict::Fail => "exceeded",
+            Verdict::Inconclusive => "open",
+        }),
+        key: line.key,
+        name: line.name,
+        meaning: line.meaning,
+        value: minus(&line.value),
+        interval: line.interval.map(|i| minus(&i)),
+        limit: line.limit.map(|l| minus(&l)),
+    }
+}
+
+fn view_block(view: &ViewFigures) -> ViewBlock {
+    ViewBlock {
+        title: view.camera.clone(),
+        fitted: view.fitted,
+        exr: format!("{}.exr", view.stem),
+        figures: view.figures.iter().map(|f| figure_block(view, f)).collect(),
+    }
+}
+
+fn figure_block(view: &ViewFigures, figure: &Figure) -> FigureBlock {
+    FigureBlock {
+        id: format!("{}-{}", view.stem, figure.kind),
+        kind: figure.kind,
+        title: figure.title,
+        caption: figure.caption.clone(),
+        alt: format!("{} seen by camera {}", figure.title, view.camera),
+        file: picture_name(&view.stem, figure.kind),
+        width: figure.raster.width,
+        height: figure.raster.height,
+        bar: figure.bar.as_ref().map(bar_block),
+        // One picture with numbers is enough; the others are to be looked at.
+        marks: if figure.kind == "difference" { mark_blocks(view, figure.raster.width) } else { Vec::new() },
+    }
+}
+
+/// Labels sized to the picture, worst first.
+fn mark_blocks(view: &ViewFigures, width: u32) -> Vec<MarkBlock> {
+    let radius = f64::from(width) / 72.0;
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    let mut block = |m: &Mark| {
+        let free = kept.iter().all(|(x, y)| (x - m.x).hypot(y - m.y) > 2.0 * radius);
+        if free {
+            kept.push((m.x, m.y));
+        }
+        MarkBlock {
+            rank: m.rank,
+            number: m.number,
+            x: format!("{:.1}", m.x),
+            y: format!("{:.1}", m.y),
+            radius: format!("{:.1}", if free { radius } else { 0.35 * radius }),
+            font: format!("{:.1}", 1.2 * radius),
+            labelled: free,
+        }
+    };
+    view.marks.iter().map(&mut block).collect()
+}
+
+fn bar_block(bar: &ColourBar) -> BarBlock {
+    let last = bar.colours.len().max(2) - 1;
+    let stop = |(k, colour): (usize, &String)| (round_number(100.0 * k as f64 / last as f64), colour.clone());
+    BarBlock {
+        stops: bar.colours.iter().enumerate().map(stop).collect(),
+        ticks: bar.ticks.iter().map(|(at, label)| (at.clone(), minus(label))).collect(),
+        unit: bar.unit,
+    }
+}
+
+fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
+    let in_sight = |number| views.iter().any(|v| v.marks.iter().any(|m| m.number == number));
+    let row = |(k, w): (usize, crate::report::WorstLine)| WorstRow {
+        rank: k + 1,
+        hidden: !views.is_empty() && !in_sight(w.number),
+        number: w.number,
+        surface: w.surface,
+        reference: minus(&w.reference),
+        solution: minus(&w.solution),
+        difference: minus(&w.difference),
+        relative: w.relative.map(|r| minus(&r)),
+        in_std_errs: w.in_std_errs.map(|e| minus(&e)),
+    };
+    let rows: Vec<WorstRow> = worst_lines(record).into_iter().enumerate().map(row).collect();
+    let (title, noun) = (worst_title(record), Level::of(record).noun());
+    Worst { title, noun, any_hidden: rows.iter().any(|r| r.hidden), rows }
+}
+
+fn setting(s: &crate::study::Setting) -> SettingRow {
+    SettingRow { name: s.name.clone(), value: s.value.clone(), changed: !s.is_default }
+}
+
+/// A true minus sign before numbers, and narrow no-break spaces before per cent signs.
+fn minus(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut chars = text.chars().peekable();
+    let mut before = ' ';
+    while let Some(c) = chars.next() {
+        let sign = c == '-' && matches!(before, ' ' | '(') && chars.peek().is_some_and(char::is_ascii_digit);
+        let unit = c == ' ' && before.is_ascii_digit() && chars.peek() == Some(&'%');
+        out.push(if sign {
+            '\u{2212}'
+        } else if unit {
+            '\u{202f}'
+        } else {
+            c
+        });
+        before = c;
+    }
+    out
+}

@@ -1,0 +1,130 @@
+use super::*;
+use crate::metrics::Verdict;
+use crate::render::testing::{room, tracer};
+use crate::render::{View, views};
+use crate::report::Phase;
+use crate::report::testing::{record, with_verdict};
+
+fn seen() -> Vec<View> {
+    let stage = room();
+    views(&tracer(&stage))
+}
+
+fn page(record: &Record, extras: &Extras) -> String {
+    let files = HtmlReport.export(record, extras).expect("report");
+    assert_eq!(files[0].name, PAGE_NAME);
+    String::from_utf8(files[0].bytes.clone()).expect("utf-8")
+}
+
+#[test]
+fn the_pages_data() {
+    let record = with_verdict(Verdict::Fail);
+    let views = seen();
+    let shown = figures(&record, &views).expect("figures");
+    insta::assert_json_snapshot!(Page::new(&record, &shown, &[]), {
+        ".program" => "[program]",
+        ".views[].figures[].bar.stops" => "[colours]",
+        ".views[].figures[].marks" => "[marks]",
+        ".worst.rows[1:]" => "[more]",
+    });
+}
+
+#[test]
+fn the_folder_holds_page_data_pictures_and_layers() {
+    let views = seen();
+    let timing = [Phase { name: "Rays".into(), seconds: 1.25 }];
+    let files = HtmlReport.export(&record(), &Extras { views: &views, timing: &timing }).expect("report");
+    let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
+    let expected = [
+        "report.html",
+        "record.json",
+        "timing.json",
+        "main-reference.png",
+        "main-candidate.png",
+        "main-difference.png",
+        "main-relative.png",
+        "main-std_err.png",
+        "main-z.png",
+        "main.exr",
+    ];
+    assert_eq!(names, expected);
+    assert_eq!(&files[3].bytes[..4], b"\x89PNG");
+    assert_eq!(&files[9].bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
+    let data: serde_json::Value = serde_json::from_slice(&files[1].bytes).expect("json");
+    assert_eq!(data["format"], "etalon-report/1");
+    assert_eq!(data["comparison"]["rms"]["value"], 0.013412);
+}
+
+#[test]
+fn whatever_a_scene_is_called_stays_text() {
+    let attack = "<script>alert(1)</script>\"'&{{ 7 * 7 }}";
+    let mut r = with_verdict(Verdict::Inconclusive);
+    r.stage.name = attack.into();
+    r.solution_name = attack.into();
+    r.replay = attack.into();
+    r.notices = vec![attack.into()];
+    r.truth = attack.into();
+    r.settings[0].value = attack.into();
+    r.provenance[0].1 = attack.into();
+    r.comparison.worst[0].surface = attack.into();
+    r.comparison.per_band[0].0 = attack.into();
+    r.stage.photometry.bands[0] = attack.into();
+    let mut views = seen();
+    let stage = room();
+    let mut camera = stage.cameras[0].clone();
+    camera.name = attack.into();
+    views[0].visibility = crate::render::Visibility::cast(&tracer(&stage), &camera, 1);
+    let html = page(&r, &Extras { views: &views, timing: &[Phase { name: attack.into(), seconds: 1.0 }] });
+    assert!(!html.contains("<script>alert"), "an unescaped name");
+    assert!(html.contains("&lt;script&gt;alert(1)"));
+    assert!(html.contains("{{ 7 * 7 }}") || html.contains("{{ 7 * 7 }}".replace(' ', "&#x20;").as_str()));
+    // One script, ours.
+    assert_eq!(html.matches("<script").count(), 1);
+}
+
+#[test]
+fn the_page_asks_for_nothing_from_outside() {
+    let views = seen();
+    let html = page(&record(), &Extras { views: &views, timing: &[] });
+    for outside in ["http://", "https://", "src=\"/", "@import", "url(http", "<link"] {
+        assert!(!html.contains(outside), "{outside}");
+    }
+    assert_eq!(html.matches("data:image/png;base64,").count(), 6);
+}
+
+#[test]
+fn each_verdict_has_its_word_its_icon_and_its_sentence_first() {
+    for (verdict, class, word) in [
+        (Verdict::Pass, "verdict pass", "PASS"),
+        (Verdict::Fail, "verdict fail", "FAIL"),
+        (Verdict::Inconclusive, "verdict open", "INCONCLUSIVE"),
+    ] {
+        let html = page(&with_verdict(verdict), &Extras::default());
+        let (band, numbers) = (html.find(class).expect("band"), html.find("The numbers").expect("numbers"));
+        assert!(band < numbers && html[band..numbers].contains(word));
+        assert!(html[band..numbers].contains("<svg") && html[band..numbers].contains("its luminance error is"));
+    }
+    assert!(page(&record(), &Extras::default()).contains("verdict none"));
+}
+
+#[test]
+fn only_the_marked_block_depends_on_the_clock() {
+    let views = seen();
+    let with = |seconds| {
+        let timing = [Phase { name: "Rays".into(), seconds }];
+        HtmlReport.export(&record(), &Extras { views: &views, timing: &timing }).expect("report")
+    };
+    let (fast, slow) = (with(1.0), with(2.0));
+    let apart = |files: &[Artifact]| -> Vec<Artifact> {
+        let cut = |a: &Artifact| {
+            let text = String::from_utf8_lossy(&a.bytes).into_owned();
+            match (text.find("<!-- wall-clock: begin"), text.find("<!-- wall-clock: end")) {
+                (Some(from), Some(to)) => Artifact::new(a.name.clone(), text[..from].to_string() + &text[to..]),
+                _ => a.clone(),
+            }
+        };
+        files.iter().filter(|a| a.name != "timing.json").map(cut).collect()
+    };
+    assert_ne!(fast[0], slow[0]);
+    assert_eq!(apart(&fast), apart(&slow));
+}

@@ -1,0 +1,140 @@
+//! Markdown, for comments on changes and job summaries.
+
+use super::asked::Level;
+use super::format::printable;
+use super::headline::{headline, verdict_word, warnings};
+use super::lines::{MetricLine, WorstLine, metric_lines, worst_lines, worst_title};
+use super::{Artifact, Exporter, Extras, ReportError};
+use crate::metrics::Verdict;
+use crate::study::Record;
+use std::fmt::Write;
+
+/// GitHub-flavoured Markdown: verdict, metrics, worst patches, command.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Markdown;
+
+impl Exporter for Markdown {
+    fn export(&self, record: &Record, _: &Extras) -> Result<Vec<Artifact>, ReportError> {
+        Ok(vec![Artifact::new("summary.md", markdown(record))])
+    }
+}
+
+fn markdown(record: &Record) -> String {
+    let head = headline(record);
+    let mut out = format!("### {} {}: {}\n\n", icon(head.verdict), head.word, escape(&record.stage.name));
+    let mut push = |text: &str| {
+        out.push_str(text);
+        out.push_str("\n\n");
+    };
+    push(&escape(&head.sentence));
+    for (title, text) in warnings(record) {
+        push(&format!("> **{}.** {}", escape(&title), escape(&text)));
+    }
+    push(&metrics(&metric_lines(record)));
+    let worst = worst_lines(record);
+    if !worst.is_empty() {
+        push(&folded(&worst_title(record), &worst_table(&worst, Level::of(record).noun())));
+    }
+    if !record.notices.is_empty() {
+        let list: Vec<String> = record.notices.iter().map(|n| format!("- {}", escape(n))).collect();
+        push(&folded("Notices", &list.join("\n")));
+    }
+    let _ = writeln!(out, "Replay: {}", code(&record.replay));
+    out
+}
+
+fn icon(verdict: Option<Verdict>) -> &'static str {
+    match verdict {
+        Some(Verdict::Pass) => "\u{2705}",
+        Some(Verdict::Fail) => "\u{274c}",
+        Some(Verdict::Inconclusive) => "\u{2754}",
+        None => "\u{2139}\u{fe0f}",
+    }
+}
+
+fn metrics(lines: &[MetricLine]) -> String {
+    let mut rows = vec!["| metric | value | interval | limit | |".to_string(), "|---|---:|---:|---:|---|".to_string()];
+    rows.extend(lines.iter().map(|l| {
+        let cell = |o: &Option<String>| o.clone().unwrap_or_default();
+        let verdict = l.verdict.map_or("", verdict_word);
+        let (interval, limit) = (cell(&l.interval), cell(&l.limit));
+        format!("| {} (`{}`) | {} | {interval} | {limit} | {verdict} |", escape(&l.name), key(&l.key), l.value)
+    }));
+    rows.join("\n")
+}
+
+/// A key holds the name of a band, which may be anything.
+fn key(text: &str) -> String {
+    printable(text).replace(['`', '|'], "_")
+}
+
+fn worst_table(lines: &[WorstLine], noun: &str) -> String {
+    let mut rows = vec![
+        format!("| {noun} | surface | reference | solution | difference | relative | in standard errors |"),
+        "|---:|---|---:|---:|---:|---:|---:|".to_string(),
+    ];
+    rows.extend(lines.iter().map(|w| {
+        let cell = |o: &Option<String>| o.clone().unwrap_or_default();
+        let (surface, relative, errors) = (escape(&w.surface), cell(&w.relative), cell(&w.in_std_errs));
+        format!(
+            "| {} | {surface} | {} | {} | {} | {relative} | {errors} |",
+            w.number, w.reference, w.solution, w.difference
+        )
+    }));
+    rows.join("\n")
+}
+
+fn folded(title: &str, body: &str) -> String {
+    format!("<details><summary>{title}</summary>\n\n{body}\n\n</details>")
+}
+
+/// Text that no Markdown reader takes for markup, a mention or a link.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in printable(text).chars() {
+        match c {
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            // A word joiner nobody sees keeps a name from being called, an address from becoming a link.
+            '@' => out.push_str("@\u{2060}"),
+            ':' if out.ends_with("http") || out.ends_with("https") => out.push_str("&#58;"),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '#' | '~' | '$' | '!' => {
+                out.push('\\');
+                out.push(c);
+            }
+            _ => out.push(c),
+        }
+    }
+    out
+}
+
+/// A code span, or a block where the text is long; its fence is longer than any run of backticks inside.
+fn code(text: &str) -> String {
+    let text = printable(text);
+    let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
+    let fence = "`".repeat((longest + 1).max(3));
+    format!("\n\n{fence}sh\n{text}\n{fence}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::testing::with_verdict;
+
+    #[test]
+    fn a_failure_reads_well() {
+        insta::assert_snapshot!(markdown(&with_verdict(Verdict::Fail)));
+    }
+
+    #[test]
+    fn names_stay_text() {
+        let mut r = with_verdict(Verdict::Fail);
+        r.stage.name = "<script>alert(1)</script> | [x](http://y) @somebody `z`".into();
+        r.replay = "etalon check ```x```".into();
+        let text = markdown(&r);
+        assert!(!text.contains("<script>") && !text.contains("@somebody") && !text.contains("http://"), "{text}");
+        assert!(text.contains("\\[x\\]") && text.contains("\\|"), "{text}");
+        assert!(text.contains("````sh\netalon check ```x```\n````"), "{text}");
+    }
+}

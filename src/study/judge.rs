@@ -1,0 +1,158 @@
+//! Putting a solution before the judge: data for the metrics, the comparison, the decision.
+
+use crate::io::StoredReference;
+use crate::math::DVec3;
+use crate::metrics::{Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, shared_confidence};
+use crate::scene::{Material, NO_FACET, Patch, Region, Stage, StageSurface};
+use crate::solution::Radiosity;
+use crate::view::Photometry;
+
+/// Who is judged: the patches or the elements of a stage.
+#[derive(Debug, Clone)]
+pub struct Receivers {
+    /// Areas that take part, m^2.
+    pub areas: Vec<f64>,
+    /// Self-emitted radiosity, receiver-major.
+    pub emission: Vec<f64>,
+    /// Surface of each.
+    pub surfaces: Vec<String>,
+    /// Bands and weights.
+    pub photometry: Photometry,
+}
+
+impl Receivers {
+    /// The patches of a stage.
+    pub fn patches(stage: &Stage) -> Self {
+        Self::of(stage, &(0..stage.patch_count()).map(|i| (i, stage.patches[i].area)).collect::<Vec<_>>())
+    }
+
+    /// The elements of a stage.
+    pub fn elements(stage: &Stage) -> Self {
+        Self::of(stage, &stage.elements.iter().map(|e| (e.patch as usize, e.area)).collect::<Vec<_>>())
+    }
+
+    fn of(stage: &Stage, receivers: &[(usize, f64)]) -> Self {
+        Self {
+            areas: receivers.iter().map(|(_, area)| *area).collect(),
+            emission: receivers.iter().flat_map(|(i, _)| stage.emission(*i)).copied().collect(),
+            surfaces: receivers.iter().map(|(i, _)| stage.surface_name(*i).to_string()).collect(),
+            photometry: stage.photometry.clone(),
+        }
+    }
+
+    /// Which of them take part.
+    pub fn present(&self) -> Vec<bool> {
+        self.areas.iter().map(|a| *a > 0.0).collect()
+    }
+}
+
+/// A stage that knows nothing but how many receivers there are, all of equal weight: for two solutions that come
+/// without their scene.
+pub fn anonymous_stage(n: usize, photometry: Photometry) -> Stage {
+    let zeros = vec![0.0; photometry.bands.len()];
+    let patch = |i: usize| Patch {
+        surface: 0,
+        material: 0,
+        facet: NO_FACET,
+        a: i as u32,
+        b: 0,
+        corners: Vec::new(),
+        normal: DVec3::ZERO,
+        area: 1.0,
+        region: Region::default(),
+        elements: i as u32..i as u32,
+    };
+    Stage {
+        name: "(no scene given)".into(),
+        state: 0,
+        enclosure: None,
+        materials: vec![Material { name: String::new(), reflectance: zeros.clone(), emission: zeros }],
+        surfaces: vec![StageSurface { name: String::new(), object: String::new() }],
+        facets: Vec::new(),
+        patches: (0..n).map(patch).collect(),
+        elements: Vec::new(),
+        cameras: Vec::new(),
+        photometry,
+    }
+}
+
+/// What a solution is held against.
+#[derive(Debug, Clone)]
+pub enum Against {
+    /// A stored reference.
+    Reference(Box<StoredReference>),
+    /// Another solution.
+    Solution(Radiosity),
+}
+
+/// Why a judgement cannot be given.
+#[derive(Debug, thiserror::Error)]
+pub enum JudgeError {
+    /// The metrics refuse.
+    #[error(transparent)]
+    Metrics(#[from] MetricsError),
+    /// Element values are asked for and the reference has none.
+    #[error("the reference holds no element values: its scene has one element per patch; use --per patch")]
+    NoElements,
+}
+
+/// What is asked of the judge.
+#[derive(Debug, Clone, Copy)]
+pub struct Question {
+    /// Limits; none for a mere comparison.
+    pub limits: Option<Limits>,
+    /// Confidence over all limits together.
+    pub confidence: f64,
+    /// Metrics on B - E.
+    pub reflected: bool,
+    /// Elements instead of patches.
+    pub per_element: bool,
+}
+
+/// The answer.
+#[derive(Debug, Clone)]
+pub struct Judgement {
+    /// All metrics.
+    pub comparison: Comparison,
+    /// The verdict, where limits were given.
+    pub decision: Option<Decision>,
+}
+
+impl Against {
+    /// As the metrics take it.
+    pub fn truth(&self, per_element: bool) -> Result<Truth, JudgeError> {
+        match self {
+            Self::Solution(b) => Ok(Truth::Given(b.clone())),
+            Self::Reference(r) if per_element => match &r.elements {
+                Some(e) => Ok(Truth::Sampled(e.clone())),
+                None if r.stage.has_elements() => Err(JudgeError::NoElements),
+                None => Ok(Truth::Sampled(r.patches.clone())),
+            },
+            Self::Reference(r) => Ok(Truth::Sampled(r.patches.clone())),
+        }
+    }
+}
+
+/// Judges a solution.
+pub fn judge(
+    solution: &Radiosity,
+    reference: &Against,
+    before: Option<&Against>,
+    receivers: &Receivers,
+    question: &Question,
+) -> Result<Judgement, JudgeError> {
+    let truth = reference.truth(question.per_element)?;
+    let before = before.map(|b| b.truth(question.per_element)).transpose()?;
+    let surfaces: Vec<&str> = receivers.surfaces.iter().map(String::as_str).collect();
+    let judged = Judged {
+        areas: &receivers.areas,
+        emission: &receivers.emission,
+        surfaces: &surfaces,
+        bands: &receivers.photometry.bands,
+        weights: &receivers.photometry.weights,
+    };
+    let confidence = question.limits.map_or(question.confidence, |l| shared_confidence(question.confidence, &l));
+    let comparison = compare(solution, &truth, before.as_ref(), &judged, confidence, question.reflected)?;
+    let decision = question.limits.map(|l| decide(&comparison, &l));
+    Ok(Judgement { comparison, decision })
+}

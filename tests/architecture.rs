@@ -1,0 +1,155 @@
+//! Who may know whom: the map of the modules, enforced.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Each module with the modules it may use. No two modules know each other.
+const MAP: &[(&str, &[&str])] = &[
+    ("math", &[]),
+    ("stats", &["math"]),
+    ("sampling", &["math"]),
+    ("view", &["math"]),
+    ("scene", &["math", "view"]),
+    ("solution", &["math", "stats"]),
+    ("raycast", &["math", "scene"]),
+    ("formfactor", &["math", "stats", "scene", "solution"]),
+    ("estimate", &["math", "stats", "sampling", "scene", "solution", "raycast", "formfactor"]),
+    ("solver", &["math", "solution"]),
+    (
+        "reference",
+        &["math", "stats", "sampling", "view", "scene", "solution", "raycast", "formfactor", "estimate", "solver"],
+    ),
+    (
+        "methods",
+        &["math", "stats", "sampling", "view", "scene", "solution", "raycast", "formfactor", "estimate", "solver"],
+    ),
+    ("metrics", &["math", "stats", "solution", "view"]),
+    ("render", &["math", "view", "scene", "solution", "raycast"]),
+    ("io", &["math", "view", "scene", "solution"]),
+    (
+        "study",
+        &[
+            "math",
+            "stats",
+            "sampling",
+            "view",
+            "scene",
+            "solution",
+            "raycast",
+            "formfactor",
+            "estimate",
+            "solver",
+            "reference",
+            "methods",
+            "metrics",
+            "render",
+            "io",
+        ],
+    ),
+    ("report", &["math", "stats", "view", "scene", "solution", "metrics", "render", "study", "io"]),
+    (
+        "cli",
+        &[
+            "math",
+            "stats",
+            "sampling",
+            "view",
+            "scene",
+            "solution",
+            "raycast",
+            "formfactor",
+            "estimate",
+            "solver",
+            "reference",
+            "methods",
+            "metrics",
+            "render",
+            "io",
+            "study",
+            "report",
+        ],
+    ),
+];
+
+fn source_files(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a readable folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            source_files(&path, out);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// Modules named after `crate::`, also in grouped imports, outside of comments and test modules.
+fn modules_used(text: &str) -> BTreeSet<String> {
+    let shipped = text.split("#[cfg(test)]\nmod tests").next().unwrap_or("");
+    let code: Vec<&str> = shipped.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
+    let code = code.join("\n");
+    let name = |rest: &str| rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    code.match_indices("crate::").map(|(at, m)| name(&code[at + m.len()..])).filter(|n| !n.is_empty()).collect()
+}
+
+#[test]
+fn imports_run_one_way() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let allowed: BTreeMap<&str, &[&str]> = MAP.iter().copied().collect();
+    let mut wrong = Vec::new();
+    let mut seen = BTreeSet::new();
+    let mut files = Vec::new();
+    source_files(&src, &mut files);
+    for file in files {
+        let relative = file.strip_prefix(&src).expect("below src");
+        let module = relative.components().next().expect("a name").as_os_str().to_string_lossy().to_string();
+        if module.ends_with(".rs") {
+            continue;
+        }
+        seen.insert(module.clone());
+        let Some(may_use) = allowed.get(module.as_str()) else {
+            wrong.push(format!("{module} is not in the map"));
+            continue;
+        };
+        // Test-only files are exempt: tests may look across.
+        if relative.file_stem().is_some_and(|s| s == "tests" || s == "testing") {
+            continue;
+        }
+        for used in modules_used(&std::fs::read_to_string(&file).expect("readable")) {
+            if used != module && allowed.contains_key(used.as_str()) && !may_use.contains(&used.as_str()) {
+                wrong.push(format!("{}: {module} may not use {used}", relative.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let unused: Vec<_> = MAP.iter().filter(|(m, _)| !seen.contains(*m)).map(|(m, _)| m).collect();
+    assert!(unused.is_empty(), "in the map but not in src: {unused:?}");
+}
+
+#[test]
+fn the_map_has_no_circles() {
+    for (position, (module, uses)) in MAP.iter().enumerate() {
+        for used in *uses {
+            let earlier = MAP[..position].iter().any(|(m, _)| m == used);
+            assert!(earlier, "{module} uses {used}, which does not stand above it");
+        }
+    }
+}
+
+#[test]
+fn the_parser_sees_grouped_and_inline_paths() {
+    let text = "use crate::math::{a, b};\n// crate::cli::x\nfn f() { crate::io::g() }\n#[cfg(test)]\nmod tests { use crate::cli; }";
+    assert_eq!(modules_used(text).into_iter().collect::<Vec<_>>(), ["io", "math"]);
+}
+
+#[test]
+fn unsafe_code_stays_where_foreign_code_is() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    source_files(&src, &mut files);
+    for file in files {
+        let relative = file.strip_prefix(&src).expect("below src").to_string_lossy().replace('\\', "/");
+        let text = std::fs::read_to_string(&file).expect("readable");
+        let opened = text.contains("allow(unsafe_code)");
+        assert!(!opened || relative.starts_with("raycast/embree"), "{relative} opens the door to unsafe code");
+    }
+}
