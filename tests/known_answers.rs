@@ -262,7 +262,7 @@ fn counts_of(session: &Session, plan: &Plan, seed: u64) -> HitCounts {
 fn exact_and_bright_solutions_read_as_they_are() {
     let c = case("cube-one-emitter-rho0.8");
     let v = |name: &str| number(&c["values"][name]);
-    let exact = vec![v("B_emitter"), v("B_opposite"), v("B_side"), v("B_side"), v("B_side"), v("B_side")];
+    let exact = [v("B_emitter"), v("B_opposite"), v("B_side"), v("B_side"), v("B_side"), v("B_side")];
     let stage = cube(1, &|_| vec![0.8], &|k| vec![f64::from(u8::from(k == 0))]);
     let truth = Truth::Sampled(reference(&stage, KernelKind::Builtin, 262_144, 8));
     let bands = ["y".to_string()];
