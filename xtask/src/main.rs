@@ -89,11 +89,11 @@ fn workspace() -> PathBuf {
 
 fn run(command: &mut Command) -> Result<(), Stopped> {
     eprintln!("xtask: {}", in_words(command));
-    let ended = |how: String| Stopped(format!("{} {how}", in_words(command)));
+    let words = in_words(command);
     match command.status() {
         Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(ended(how_it_ended(status))),
-        Err(e) => Err(ended(format!("cannot be run: {e}"))),
+        Ok(status) => Err(Stopped(format!("{words} {}", how_it_ended(status)))),
+        Err(e) => Err(Stopped(format!("{words} cannot be run: {e}"))),
     }
 }
 
