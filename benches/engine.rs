@@ -73,9 +73,9 @@ fn measure(name: &str, stage: &Stage) {
     line("built-in kernel", builtin);
 }
 
-/// Some sixty patches spread over the stage.
+/// Some 256 patches spread over the stage.
 fn some_emitters(stage: &Stage) -> Vec<Option<Emitter>> {
-    let step = stage.patch_count().div_ceil(64);
+    let step = stage.patch_count().div_ceil(256);
     let mut emitters = patch_emitters(stage);
     emitters.iter_mut().enumerate().filter(|(i, _)| i % step != 0).for_each(|(_, e)| *e = None);
     emitters

@@ -3,14 +3,17 @@
 use super::{Emitter, Entry, HitCounts, Plan, Reached};
 use crate::math::{DVec3, Frame};
 use crate::raycast::{BACK, RayBatch, Tally, TraceScratch, Tracer};
-use crate::sampling::{Net, PointMap, Stream};
+use crate::sampling::{Net, PointMap, Stream, fold};
 use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Rays of one batch: enough to feed packets, small enough for the first-level cache.
 const BATCH: usize = 256;
 /// Samples of one net over all randomisations: bounds memory to some 10 MB.
 const NET: u64 = 1 << 18;
+/// Samples of one randomisation in one net: what a 16-bit counter holds.
+const MOST_PER_RANDOMISATION: u64 = 1 << 15;
 
 /// A finished casting.
 #[derive(Debug)]
@@ -40,7 +43,8 @@ pub fn cast(
     let mut waves = Vec::new();
     for rays in plan.waves() {
         while counts.rays < rays {
-            let block = (rays - counts.rays).min((NET / u64::from(plan.randomisations)).max(1));
+            let most = (NET / u64::from(plan.randomisations)).clamp(1, MOST_PER_RANDOMISATION);
+            let block = (rays - counts.rays).min(most);
             cast_block(tracer, emitters, stream, &mut counts, block, progress);
         }
         let relative = error(&counts);
@@ -68,13 +72,13 @@ fn cast_block(
 ) {
     let net = Net::new(stream.child(0), counts.randomisations, counts.rays, block);
     let shifts = stream.child(1);
-    let work = || Worker::new(counts.patches, counts.randomisations);
+    let workers = Workers { idle: Mutex::default(), patches: counts.patches, randomisations: counts.randomisations };
     let rows: Vec<(usize, Vec<Entry>, Tally)> = emitters
         .par_iter()
         .enumerate()
         .filter_map(|(i, e)| e.as_ref().map(|e| (i, e)))
-        .map_init(work, |worker, (i, emitter)| {
-            let (row, tally) = worker.row(tracer, &net, emitter, shifts.child(emitter.key));
+        .map(|(i, emitter)| {
+            let (row, tally) = workers.lend(|w| w.row(tracer, &net, emitter, shifts.child(emitter.key)));
             progress(net.len() as u64);
             (i, row, tally)
         })
@@ -123,28 +127,47 @@ fn fill(rays: &mut RayBatch, net: &Net, first: usize, emitter: &Emitter, shift: 
     make_directions(rays, net, first, &frame);
 }
 
+/// Workers that wait for a row: as many as threads, since their counters are large.
+struct Workers {
+    idle: Mutex<Vec<Worker>>,
+    patches: usize,
+    randomisations: u16,
+}
+
+impl Workers {
+    fn lend<R>(&self, work: impl FnOnce(&mut Worker) -> R) -> R {
+        let waiting = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut worker = waiting.unwrap_or_else(|| Worker::new(self.patches, self.randomisations));
+        let result = work(&mut worker);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(worker);
+        result
+    }
+}
+
 /// Working memory of one thread.
 struct Worker {
-    randomisations: usize,
+    /// Counters of a patch: R rounded up to 2^shift, so that no address takes a division.
+    shift: u32,
     rays: RayBatch,
     landings: Vec<u32>,
     scratch: TraceScratch,
-    /// Hits by `patch * R + randomisation`.
-    hits: Vec<u32>,
-    /// One bit for each 64 of `hits` that is not all zero.
+    /// Hits by `patch << shift | randomisation`: small numbers, to stay near the processor.
+    hits: Vec<u16>,
+    /// One bit for each of `hits` that is not zero.
     touched: Vec<u64>,
 }
 
 impl Worker {
     fn new(patches: usize, randomisations: u16) -> Self {
-        let slots = patches * usize::from(randomisations);
+        let shift = usize::from(randomisations).next_power_of_two().ilog2();
+        let slots = patches << shift;
         Self {
-            randomisations: usize::from(randomisations),
+            shift,
             rays: RayBatch::zeroed(BATCH),
             landings: vec![0; BATCH],
             scratch: TraceScratch::default(),
-            hits: vec![0; slots.next_multiple_of(64)],
-            touched: vec![0; slots.div_ceil(64 * 64)],
+            hits: vec![0; slots],
+            touched: vec![0; slots.div_ceil(64)],
         }
     }
 
@@ -164,26 +187,24 @@ impl Worker {
     fn count(&mut self, randomisation: &[u16]) {
         for (landing, r) in self.landings.iter().zip(randomisation) {
             if *landing < BACK {
-                let slot = *landing as usize * self.randomisations + usize::from(*r);
+                let slot = (*landing as usize) << self.shift | usize::from(*r);
                 self.hits[slot] += 1;
-                self.touched[slot >> 12] |= 1 << (slot >> 6 & 63);
+                self.touched[slot >> 6] |= 1 << (slot & 63);
             }
         }
     }
 
     /// Entries of the row in ascending order; leaves the counters zero.
     fn take_entries(&mut self) -> Vec<Entry> {
-        let mut out = Vec::new();
+        let used: u32 = self.touched.iter().map(|bits| bits.count_ones()).sum();
+        let mut out = Vec::with_capacity(used as usize);
         for (word, bits) in self.touched.iter_mut().enumerate() {
             while *bits != 0 {
-                let block = (word << 6 | bits.trailing_zeros() as usize) << 6;
+                let slot = word << 6 | bits.trailing_zeros() as usize;
                 *bits &= *bits - 1;
-                for (slot, hits) in self.hits[block..block + 64].iter_mut().enumerate().filter(|(_, h)| **h != 0) {
-                    let slot = block + slot;
-                    let patch = (slot / self.randomisations) as u32;
-                    out.push(Entry::new(patch, (slot % self.randomisations) as u16, u64::from(*hits)));
-                    *hits = 0;
-                }
+                let (patch, randomisation) = (slot >> self.shift, slot & ((1 << self.shift) - 1));
+                let hits = std::mem::take(&mut self.hits[slot]);
+                out.push(Entry::new(patch as u32, randomisation as u16, u64::from(hits)));
             }
         }
         out
@@ -200,19 +221,37 @@ fn make_positions(rays: &mut RayBatch, net: &Net, first: usize, map: &PointMap, 
     let n = rays.len();
     let (u, v) = (&net.u[first..first + n], &net.v[first..first + n]);
     match map {
-        PointMap::Parallelogram { origin, e1, e2 } => {
-            for c in 0..3 {
-                let (o, a, b) = (origin[c], e1[c], e2[c]);
-                for (x, (u, v)) in rays.origin[c].iter_mut().zip(u.iter().zip(v)) {
-                    *x = o + a * unit(u ^ shift[0]) + b * unit(v ^ shift[1]);
-                }
-            }
-        }
+        PointMap::Parallelogram { origin, e1, e2 } => place(rays, u, v, shift, [*origin, *e1, *e2], |u, v| (u, v)),
+        PointMap::Triangle { origin, e1, e2 } => place(rays, u, v, shift, [*origin, *e1, *e2], fold),
         PointMap::Triangles(_) => {
             for k in 0..n {
                 let p: DVec3 = map.at(unit(u[k] ^ shift[0]), unit(v[k] ^ shift[1]));
                 (rays.origin[0][k], rays.origin[1][k], rays.origin[2][k]) = (p.x, p.y, p.z);
             }
+        }
+    }
+}
+
+/// Origins `o + a e1 + b e2`: straight loops that the compiler turns into vector code.
+#[inline]
+fn place(
+    rays: &mut RayBatch,
+    u: &[i32],
+    v: &[i32],
+    shift: [i32; 2],
+    [o, e1, e2]: [DVec3; 3],
+    shape: impl Fn(f64, f64) -> (f64, f64),
+) {
+    let n = u.len().min(BATCH);
+    let (mut a, mut b) = ([0.0; BATCH], [0.0; BATCH]);
+    for k in 0..n {
+        (a[k], b[k]) = shape(unit(u[k] ^ shift[0]), unit(v[k] ^ shift[1]));
+    }
+    for c in 0..3 {
+        let (o, e1, e2) = (o[c], e1[c], e2[c]);
+        let out = &mut rays.origin[c][..n];
+        for k in 0..n {
+            out[k] = o + e1 * a[k] + e2 * b[k];
         }
     }
 }
@@ -224,7 +263,7 @@ fn make_directions(rays: &mut RayBatch, net: &Net, first: usize, frame: &Frame) 
         let (x, y, z) = (frame.x[c], frame.y[c], frame.z[c]);
         let out = &mut rays.direction[c][..n];
         for k in 0..n {
-            out[k] = lx[k] * x + ly[k] * y + lz[k] * z;
+            out[k] = f64::from(lx[k]) * x + f64::from(ly[k]) * y + f64::from(lz[k]) * z;
         }
     }
 }

@@ -8,6 +8,34 @@ pub const ESCAPED: u32 = u32::MAX;
 /// Landing code of a ray that met a black back, or a covered part that takes no part.
 pub const BACK: u32 = u32::MAX - 1;
 
+/// What every hit asks of its facet: kept apart and small, since hits are scattered over all facets.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(32))]
+pub(super) struct Side {
+    normal: DVec3,
+    /// First patch of the front; [`ASK`] where the answer needs a [`Locator`].
+    front: u32,
+    /// First patch of the back; [`ASK`] likewise, also where the back is black.
+    back: u32,
+}
+
+/// The facet is divided, or the landing needs a second thought.
+pub(super) const ASK: u32 = u32::MAX;
+
+impl Side {
+    /// The sides of a facet; `simple` if it is one patch and that patch takes part.
+    fn new(facet: &Facet, simple: bool) -> Self {
+        let answer = |patch: Option<u32>| if simple { patch.unwrap_or(ASK) } else { ASK };
+        Self { normal: facet.normal, front: answer(Some(facet.first_patch)), back: answer(facet.first_back_patch) }
+    }
+
+    /// The patch met in this direction; [`ASK`] if that takes more to say.
+    #[inline]
+    pub(super) fn patch(&self, direction: DVec3) -> u32 {
+        if self.normal.dot(direction) < 0.0 { self.front } else { self.back }
+    }
+}
+
 /// One facet, ready to be asked which patch a ray lands in.
 #[derive(Debug, Clone)]
 pub(super) struct Locator {
@@ -138,6 +166,13 @@ pub(super) fn contains(facet: &Facet, p: DVec3) -> bool {
         let slack = 1e-12 * (b - a).length_squared();
         facet.normal.cross(b - a).dot(p - a) >= -slack
     })
+}
+
+/// Sides of all facets.
+pub(super) fn sides(stage: &Stage) -> Vec<Side> {
+    let present = |patch: Option<u32>| patch.is_none_or(|p| stage.patches[p as usize].is_present());
+    let simple = |f: &Facet| f.grid.count() == 1 && present(Some(f.first_patch)) && present(f.first_back_patch);
+    stage.facets.iter().map(|f| Side::new(f, simple(f))).collect()
 }
 
 /// Locators of all facets.

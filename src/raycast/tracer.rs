@@ -1,6 +1,6 @@
 //! From rays to patches: a kernel finds the facet, double precision finds the rest.
 
-use super::locate::{BACK, ESCAPED, Locator, contains, locators};
+use super::locate::{ASK, BACK, ESCAPED, Locator, Side, contains, locators, sides};
 use super::{KernelInfo, RayBatch, RayKernel};
 use crate::math::DVec3;
 use crate::scene::{NO_FACET, Stage};
@@ -44,6 +44,7 @@ pub struct Tracer<'a> {
     kernel: Arc<dyn RayKernel>,
     /// Double-precision kernel that decides doubtful rays again.
     second: Arc<dyn RayKernel>,
+    sides: Vec<Side>,
     locators: Vec<Locator>,
     present: Vec<bool>,
     enclosure: bool,
@@ -56,6 +57,7 @@ impl<'a> Tracer<'a> {
             stage,
             kernel,
             second,
+            sides: sides(stage),
             locators: locators(stage),
             present: stage.patches.iter().map(|p| p.is_present()).collect(),
             enclosure,
@@ -118,7 +120,13 @@ impl<'a> Tracer<'a> {
         if facet == NO_FACET {
             return ESCAPED;
         }
-        let (origin, direction) = (rays.origin_of(k), rays.direction_of(k));
+        let direction = rays.direction_of(k);
+        let patch = self.sides[facet as usize].patch(direction);
+        if patch == ASK { self.landing_within(facet, rays.origin_of(k), direction) } else { patch }
+    }
+
+    /// The landing on a facet that is divided, black behind, or partly covered.
+    fn landing_within(&self, facet: u32, origin: DVec3, direction: DVec3) -> u32 {
         let patch = self.locators[facet as usize].patch(origin, direction);
         if patch == BACK {
             return self.twin_front(facet, origin, direction);

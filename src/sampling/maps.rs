@@ -32,7 +32,16 @@ pub enum PointMap {
         /// Edge along v.
         e2: DVec3,
     },
-    /// Triangles, chosen by the first coordinate in proportion to area.
+    /// One triangle: origin and two edges.
+    Triangle {
+        /// Corner at (0, 0).
+        origin: DVec3,
+        /// Edge along u.
+        e1: DVec3,
+        /// Edge along v.
+        e2: DVec3,
+    },
+    /// Several triangles, chosen by the first coordinate in proportion to area.
     Triangles(Vec<Triangle>),
 }
 
@@ -67,23 +76,36 @@ impl PointMap {
             out.push(Triangle { origin: o, e1: a - o, e2: b - o, begin, scale: total / size });
             begin += size / total;
         }
-        (!out.is_empty()).then_some(Self::Triangles(out))
+        match out[..] {
+            [] => None,
+            [Triangle { origin, e1, e2, .. }] => Some(Self::Triangle { origin, e1, e2 }),
+            _ => Some(Self::Triangles(out)),
+        }
     }
 
     /// The point that (u, v) goes to.
     pub fn at(&self, u: f64, v: f64) -> DVec3 {
         match self {
             Self::Parallelogram { origin, e1, e2 } => *origin + *e1 * u + *e2 * v,
+            Self::Triangle { origin, e1, e2 } => {
+                let (a, b) = fold(u, v);
+                *origin + *e1 * a + *e2 * b
+            }
             Self::Triangles(list) => {
                 let k = list.partition_point(|t| t.begin <= u).max(1) - 1;
                 let t = &list[k];
                 let w = ((u - t.begin) * t.scale).clamp(0.0, 1.0);
-                // Folding the square along its diagonal covers the triangle evenly.
-                let (a, b) = if w + v > 1.0 { (1.0 - w, 1.0 - v) } else { (w, v) };
+                let (a, b) = fold(w, v);
                 t.origin + t.e1 * a + t.e2 * b
             }
         }
     }
+}
+
+/// Folds the unit square along its diagonal: covers the triangle u + v <= 1 evenly.
+#[inline]
+pub fn fold(u: f64, v: f64) -> (f64, f64) {
+    if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
 }
 
 #[cfg(test)]

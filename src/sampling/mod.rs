@@ -8,7 +8,7 @@ mod net;
 mod sobol;
 mod stream;
 
-pub use maps::{PointMap, concentric_disk, cosine_hemisphere};
+pub use maps::{PointMap, concentric_disk, cosine_hemisphere, fold};
 pub use net::Net;
 pub use sobol::{owen_scrambled, sobol};
 pub use stream::{Role, Stream};
