@@ -287,7 +287,8 @@ pub struct RTCIntersectArguments {
     pub context: *mut RTCRayQueryContext,
     pub filter: RTCFilterFunctionN,
     pub intersect: RTCIntersectFunctionN,
-    room: [u64; 4],
+    #[doc(hidden)]
+    pub room: [u64; 4],
 }
 
 impl Default for RTCIntersectArguments {

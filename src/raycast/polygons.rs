@@ -162,10 +162,6 @@ impl Polygons {
         self.diagonal
     }
 
-    pub(super) fn groups(&self) -> &[u32] {
-        &self.groups
-    }
-
     pub(super) fn facet_of(&self, polygon: u32) -> u32 {
         self.polygons[polygon as usize].facet
     }

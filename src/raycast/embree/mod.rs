@@ -6,8 +6,8 @@
 //! - those that *start* within [`REACH`] of something they do not stand on: rounding, and the step off their own
 //!   plane, may put them on its other side;
 //! - those that meet something within [`NEAR_HIT`], or a facet of their own plane after all;
-//! - those that meet a facet with another one less than [`REACH`] before or behind it: Embree may name the wrong
-//!   one of the two.
+//! - those that end where another facet lies less than [`REACH`] before or behind: Embree may name the wrong one
+//!   of the two.
 //!
 //! All other rays start one small step ([`STEP`]) off their own plane, which is how that plane is not met:
 //! no minimum distance, and no light lost in proportion to the step.
@@ -22,6 +22,7 @@ use crate::math::DVec3;
 use crate::scene::{NO_FACET, Stage};
 use embree4_sys::{Library, RTC_INVALID_GEOMETRY_ID, RTCRay8, RTCRayHit8, Valid8};
 use near::{Checks, Surroundings};
+use stacked::Stacks;
 use std::sync::Arc;
 
 pub(super) use library::load;
@@ -36,7 +37,7 @@ const REACH: f64 = 4.0 * STEP;
 /// Hits this near, in diagonals, are decided again.
 const NEAR_HIT: f64 = 1e-5;
 
-/// Top bit of a facet number in the triangle table: hits on it are decided again.
+/// Top bit of a facet number in the triangle table: something is stacked on it.
 const DELICATE: u32 = 1 << 31;
 
 /// Traces packets of rays in single precision.
@@ -54,13 +55,21 @@ pub(super) struct Mesh {
     facet_of: Vec<u32>,
 }
 
+/// What a triangle belongs to.
+struct Triangle {
+    /// Facet, with the mark of those that have something stacked on them.
+    facet: u32,
+    /// Its plane group.
+    group: u32,
+}
+
 /// Embree 4 on a stage; `T` is the way to reach it.
 pub struct EmbreeKernel<T = library::Scene> {
     info: KernelInfo,
     scene: T,
-    /// Facet of each triangle, with the mark of delicate ones.
-    facet_of: Vec<u32>,
+    triangles: Vec<Triangle>,
     surroundings: Surroundings,
+    stacks: Stacks,
     exact: Arc<BuiltinKernel>,
 }
 
@@ -83,29 +92,38 @@ impl<T: TracePacket> EmbreeKernel<T> {
     /// The kernel around a scene that was made from `mesh`.
     pub(super) fn around(scene: T, mesh: Mesh, info: KernelInfo, stage: &Stage, exact: Arc<BuiltinKernel>) -> Self {
         let reach = REACH * exact.polygons().diagonal();
-        let stacked = stacked::closely_stacked(stage, &exact, reach);
-        let mut facet_of = mesh.facet_of;
-        facet_of.iter_mut().filter(|f| stacked[**f as usize]).for_each(|f| *f |= DELICATE);
-        let surroundings = Surroundings::new(stage, &exact, reach);
-        Self { info, scene, facet_of, surroundings, exact }
+        let stacks = Stacks::new(stage, &exact, reach);
+        let triangles = mesh.facet_of.iter().map(|&f| Triangle {
+            facet: if stacks.any(f) { f | DELICATE } else { f },
+            group: exact.polygons().own_group(f),
+        });
+        let (triangles, surroundings) = (triangles.collect(), Surroundings::new(stage, &exact, reach));
+        Self { info, scene, triangles, surroundings, stacks, exact }
     }
 
     /// Reads what a packet met. Bits of `again` mark the rays to be decided again, also in the result.
     #[inline]
     fn read(&self, packet: &RTCRayHit8, own: u32, near_hit: f32, facets: &mut [u32; 8]) -> u32 {
-        let groups = self.exact.polygons().groups();
         let mut again = 0;
         for k in 0..8 {
             if packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID {
                 facets[k] = NO_FACET;
                 continue;
             }
-            let marked = self.facet_of[packet.hit.primID[k] as usize];
-            facets[k] = marked & !DELICATE;
-            let doubtful = marked & DELICATE != 0 || packet.ray.tfar[k] < near_hit || groups[facets[k] as usize] == own;
-            again |= u32::from(doubtful) << k;
+            let met = &self.triangles[packet.hit.primID[k] as usize];
+            facets[k] = met.facet & !DELICATE;
+            let delicate = met.facet & DELICATE != 0 && self.is_stacked(facets[k], &packet.ray, k);
+            again |= u32::from(delicate || packet.ray.tfar[k] < near_hit || met.group == own) << k;
         }
         again
+    }
+
+    /// True if something lies closely before or behind the point where ray k ends.
+    #[cold]
+    fn is_stacked(&self, facet: u32, r: &RTCRay8, k: usize) -> bool {
+        let t = r.tfar[k];
+        let end = [r.org_x[k] + t * r.dir_x[k], r.org_y[k] + t * r.dir_y[k], r.org_z[k] + t * r.dir_z[k]];
+        self.stacks.near(facet, end, (2.0 * REACH * self.exact.polygons().diagonal()) as f32)
     }
 }
 

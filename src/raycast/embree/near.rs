@@ -82,7 +82,7 @@ impl Checks {
 
 #[inline]
 fn distances(row: &[f32; 4], x: &[f32; 8], y: &[f32; 8], z: &[f32; 8]) -> [f32; 8] {
-    std::array::from_fn(|k| row[0] * x[k] + row[1] * y[k] + row[2] * z[k] + row[3])
+    std::array::from_fn(|k| distance(row, [x[k], y[k], z[k]]))
 }
 
 #[inline]
@@ -90,7 +90,14 @@ fn mask(lanes: &[bool; 8]) -> u32 {
     lanes.iter().enumerate().fold(0, |m, (k, lane)| m | u32::from(*lane) << k)
 }
 
-fn single(row: [f64; 4]) -> [f32; 4] {
+/// Distance of a point from the plane of a row.
+#[inline]
+pub(super) fn distance(row: &[f32; 4], [x, y, z]: [f32; 3]) -> f32 {
+    row[0] * x + row[1] * y + row[2] * z + row[3]
+}
+
+/// A row in single precision.
+pub(super) fn single(row: [f64; 4]) -> [f32; 4] {
     row.map(|c| c as f32)
 }
 

@@ -1,29 +1,54 @@
 //! Facets that lie so close over one another that single precision cannot tell which comes first.
 
+use super::near::{distance, single};
 use crate::math::{DVec3, area, clip_to_half_space, diameter};
 use crate::raycast::builtin::BuiltinKernel;
 use crate::scene::Stage;
 
-/// An overlap narrower than this many reaches is an edge where two facets meet, not a stack.
+/// An overlap narrower than this many reaches is a line where two facets meet, not a stack.
 const WIDTH: f64 = 5.0;
 
-/// Which facets have another one, not in their own plane, less than `reach` metres before or behind them.
-pub(super) fn closely_stacked(stage: &Stage, exact: &BuiltinKernel, reach: f64) -> Vec<bool> {
-    let mut stacked = vec![false; stage.facets.len()];
-    let mut found = Vec::new();
-    for f in 0..stage.facets.len() {
-        over(stage, exact, f, reach, &mut found);
-        for &p in &found {
-            let g = exact.polygons().facet_of(p) as usize;
-            if !(stacked[f] && stacked[g]) && overlap(stage, f, g, reach) {
-                (stacked[f], stacked[g]) = (true, true);
-            }
-        }
-    }
-    stacked
+/// More facets than this over one, and its hits are no longer told apart.
+const FEW: usize = 16;
+
+/// Which facets have others, not in their own plane, less than a reach before or behind them.
+pub(super) struct Stacks {
+    /// Where the planes of each facet's neighbours begin; one more at the end.
+    first: Vec<u32>,
+    planes: Vec<[f32; 4]>,
 }
 
-/// Polygons of later facets near facet `f`, over it, in another plane.
+impl Stacks {
+    /// `reach` in metres.
+    pub(super) fn new(stage: &Stage, exact: &BuiltinKernel, reach: f64) -> Self {
+        let mut stacks = Self { first: vec![0], planes: Vec::new() };
+        let mut found = Vec::new();
+        for f in 0..stage.facets.len() {
+            over(stage, exact, f, reach, &mut found);
+            let close = found.iter().filter(|&&p| overlap(stage, f, exact.polygons().facet_of(p) as usize, reach));
+            stacks.planes.extend(close.map(|&p| single(exact.polygons().plane(p))));
+            stacks.first.push(stacks.planes.len() as u32);
+        }
+        stacks
+    }
+
+    /// True if anything is stacked on a facet.
+    pub(super) fn any(&self, facet: u32) -> bool {
+        !self.planes_of(facet).is_empty()
+    }
+
+    /// True if something lies within reach of a point (from the scene's centre) of a facet, or may lie there.
+    pub(super) fn near(&self, facet: u32, point: [f32; 3], reach: f32) -> bool {
+        let planes = self.planes_of(facet);
+        planes.len() > FEW || planes.iter().any(|row| distance(row, point).abs() < reach)
+    }
+
+    fn planes_of(&self, facet: u32) -> &[[f32; 4]] {
+        &self.planes[self.first[facet as usize] as usize..self.first[facet as usize + 1] as usize]
+    }
+}
+
+/// Polygons near facet `f` and over it, in another plane.
 fn over(stage: &Stage, exact: &BuiltinKernel, f: usize, reach: f64, found: &mut Vec<u32>) {
     let polygons = exact.polygons();
     let corners = &stage.facets[f].vertices;
@@ -31,9 +56,8 @@ fn over(stage: &Stage, exact: &BuiltinKernel, f: usize, reach: f64, found: &mut 
     exact.polygons_in_box(lo - reach, hi + reach, found);
     let (own, outline) = (polygons.own_group(f as u32), polygons.outline(f as u32));
     found.retain(|&p| {
-        let g = polygons.facet_of(p) as usize;
-        let corners = &stage.facets[g].vertices;
-        g > f && polygons.group_of(p) != own && !outline.iter().any(|e| polygons.is_beyond(e, corners))
+        let corners = &stage.facets[polygons.facet_of(p) as usize].vertices;
+        polygons.group_of(p) != own && !outline.iter().any(|e| polygons.is_beyond(e, corners))
     });
 }
 
