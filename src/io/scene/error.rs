@@ -160,7 +160,7 @@ impl Diagnostic for SceneFileError {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.details.span.clone()?;
-        let label = LabeledSpan::new(Some(self.details.message.clone()), span.start, span.len());
+        let label = LabeledSpan::new(None, span.start, span.len());
         Some(Box::new(std::iter::once(label)))
     }
 }
