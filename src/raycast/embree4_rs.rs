@@ -14,6 +14,7 @@ use embree4_sys::*;
 use std::sync::Arc;
 
 /// Size of what `intersect_1` hands back.
+#[expect(clippy::type_complexity, reason = "the signature is the wrapper's")]
 const fn size_of_answer<Answer, E>(
     _: fn(&CommittedScene, RTCRay, Option<&RTCIntersectArguments>) -> Result<Option<Answer>, E>,
 ) -> usize {
@@ -65,7 +66,7 @@ impl Wrapped {
         };
         let options = SceneOptions { build_quality: RTCBuildQuality::HIGH, flags: RTCSceneFlags::ROBUST };
         let scene = Scene::try_new(device, options).map_err(|e| failed("making a scene", &e))?;
-        for g in &geometry {
+        if let Some(g) = &geometry {
             scene.attach_geometry(g).map_err(|e| failed("making a triangle mesh", &e))?;
         }
         scene.commit().map(Self).map_err(|e| failed("building the hierarchy", &e))
