@@ -56,14 +56,7 @@ pub struct PatchVectors {
 impl PatchVectors {
     /// The vectors of a stage.
     pub fn of(stage: &Stage) -> Self {
-        let bands = stage.band_count();
-        let mut v = Self { bands, emission: Vec::new(), reflectance: Vec::new() };
-        for (i, patch) in stage.patches.iter().enumerate() {
-            let part = if patch.is_present() { 1.0 } else { 0.0 };
-            v.emission.extend(stage.emission(i).iter().map(|e| e * part));
-            v.reflectance.extend(stage.reflectance(i).iter().map(|r| r * part));
-        }
-        v
+        Self { bands: stage.band_count(), emission: stage.emissions(), reflectance: stage.reflectances() }
     }
 
     /// As a system to be solved.

@@ -59,15 +59,7 @@ struct Inputs {
 
 impl Inputs {
     fn of(stage: &Stage) -> Self {
-        let column = |get: &dyn Fn(usize) -> Vec<f64>| -> Vec<f64> {
-            let value = |i: usize| if stage.patches[i].is_present() { get(i) } else { vec![0.0; stage.band_count()] };
-            (0..stage.patch_count()).flat_map(value).collect()
-        };
-        Self {
-            emission: column(&|i| stage.emission(i).to_vec()),
-            reflectance: column(&|i| stage.reflectance(i).to_vec()),
-            bands: stage.band_count(),
-        }
+        Self { bands: stage.band_count(), emission: stage.emissions(), reflectance: stage.reflectances() }
     }
 
     fn system(&self) -> System<'_> {

@@ -139,6 +139,21 @@ impl Stage {
         &self.materials[self.patches[patch].material as usize].emission
     }
 
+    /// Self-emitted radiosities of all patches, W/m^2, row-major N x bands; 0 for patches that take no part.
+    pub fn emissions(&self) -> Vec<f64> {
+        self.per_patch(|i| self.emission(i))
+    }
+
+    /// Reflectances of all patches, row-major N x bands; 0 for patches that take no part.
+    pub fn reflectances(&self) -> Vec<f64> {
+        self.per_patch(|i| self.reflectance(i))
+    }
+
+    fn per_patch<'a>(&'a self, values: impl Fn(usize) -> &'a [f64]) -> Vec<f64> {
+        let part = |i: usize| if self.patches[i].is_present() { 1.0 } else { 0.0 };
+        (0..self.patch_count()).flat_map(|i| values(i).iter().map(move |v| v * part(i))).collect()
+    }
+
     /// Name of the surface a patch belongs to.
     pub fn surface_name(&self, patch: usize) -> &str {
         &self.surfaces[self.patches[patch].surface as usize].name
