@@ -229,6 +229,9 @@ pub struct SolveArgs {
     /// Seed of ray-cast methods.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// Estimator of ray-cast methods (in this version both are hemisphere rays).
+    #[arg(long, value_enum, default_value_t = Estimator::Auto)]
+    pub estimator: Estimator,
     /// Level of the values.
     #[arg(long, value_enum, default_value_t = PerLevel::Patch)]
     pub per: PerLevel,
