@@ -66,6 +66,8 @@ api! {
     fn rtcAttachGeometry(scene: RTCScene, geometry: RTCGeometry) -> u32, else RTC_INVALID_GEOMETRY_ID;
     /// Builds the hierarchy.
     fn rtcCommitScene(scene: RTCScene);
+    /// Builds the hierarchy on the threads that call this: on the calling one alone, if no other does.
+    fn rtcJoinCommitScene(scene: RTCScene);
     /// Box around a committed scene.
     fn rtcGetSceneBounds(scene: RTCScene, bounds: *mut RTCBounds);
     /// First hit of one ray.

@@ -136,8 +136,9 @@ impl<'a> Scene<'a> {
         for triangles in [&TRIANGLES[..1], &TRIANGLES[..]] {
             scene.attach(device, triangles).ok_or_else(|| device.broken(path, "making a triangle mesh"))?;
         }
+        // Joined: after two commits of the other kind on one thread a worker of TBB spins to the end of the process.
         // SAFETY: a live scene.
-        unsafe { (api.rtcCommitScene)(scene.handle) };
+        unsafe { (api.rtcJoinCommitScene)(scene.handle) };
         if device.error() == RTCError::NONE { Ok(scene) } else { Err(device.broken(path, "building a hierarchy")) }
     }
 

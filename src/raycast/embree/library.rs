@@ -115,8 +115,9 @@ impl Scene {
         if !mesh.triangles.is_empty() {
             scene.attach(mesh)?;
         }
+        // Joined: after two commits of the other kind on one thread a worker of TBB spins to the end of the process.
         // SAFETY: a live scene.
-        unsafe { rtcCommitScene(scene.handle) };
+        unsafe { rtcJoinCommitScene(scene.handle) };
         scene.device.check("building the hierarchy")?;
         Ok(scene)
     }
