@@ -474,6 +474,57 @@ mod sides {
     }
 }
 
+mod by_rays {
+    use super::*;
+    use etalon::methods::hemicube::Face;
+
+    /// What a ray from `eye` meets first, by trying every polygon: no projection, no clipping, no buffers.
+    fn first_seen(stage: &Stage, from: usize, eye: DVec3, direction: DVec3) -> Item {
+        let mut nearest = (f64::INFINITY, Item::NOTHING);
+        for (j, patch) in stage.patches.iter().enumerate().filter(|(j, _)| *j != from) {
+            let (n, v) = (patch.normal, &patch.corners);
+            let distance = n.dot(v[0] - eye) / n.dot(direction);
+            let at = eye + direction * distance;
+            let edges = (0..v.len()).map(|k| (v[(k + 1) % v.len()] - v[k]).cross(at - v[k]).dot(n));
+            if distance > 0.0 && distance < nearest.0 && edges.into_iter().all(|side| side >= 0.0) {
+                let front = n.dot(direction) < 0.0;
+                nearest = (distance, if front { Item::patch(j as u32) } else { Item::BACK });
+            }
+        }
+        nearest.1
+    }
+
+    /// Numbers in [-1, 1) from a linear congruential generator.
+    fn scatter(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    #[test]
+    fn every_pixel_shows_what_a_ray_through_its_centre_meets() {
+        let mut seed = 20;
+        for round in 0..6 {
+            let mut point = |reach: f64| p(scatter(&mut seed), scatter(&mut seed), scatter(&mut seed)) * reach;
+            let mut b = ground();
+            for k in 0..40 {
+                let (at, size) = (point(2.0), if k % 4 == 0 { 3.0 } else { 0.5 });
+                b.surface(&[at + point(size), at + point(size), at + point(size)], Grid::Triangle { n: 2 }, 0.5, 0.0);
+            }
+            let set = Params { rotation: f64::from(round) * 31.0, ..params(34) };
+            let seen = item_buffer(&b.0, 0, &set).unwrap().unwrap();
+            for (face, items) in Face::ALL.into_iter().zip(&seen.faces) {
+                for (k, item) in items.iter().enumerate() {
+                    let direction = seen.direction(face, k % 34, k / 34);
+                    let wanted = first_seen(&b.0, 0, seen.eye, direction);
+                    assert_eq!(*item, wanted, "round {round}, {face:?}, pixel {} {}", k % 34, k / 34);
+                }
+            }
+            let (backs, nothing) = (seen.count(Item::BACK), seen.count(Item::NOTHING));
+            assert!(backs > 100 && nothing < 2500, "too empty to prove anything: {backs} backs, {nothing} nothing");
+        }
+    }
+}
+
 mod contact {
     use super::*;
     use etalon::math::subtract_convex;
