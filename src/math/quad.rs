@@ -86,7 +86,11 @@ pub fn triangle_cell_corners(t: [DVec3; 3], n: u32, k: u32, b: u32) -> [DVec3; 3
         t[0] + (t[1] - t[0]) * (f64::from(i) / f64::from(n)) + (t[2] - t[0]) * (f64::from(j) / f64::from(n))
     };
     let i = k / 2;
-    if k % 2 == 0 { [at(i, b), at(i + 1, b), at(i, b + 1)] } else { [at(i + 1, b), at(i + 1, b + 1), at(i, b + 1)] }
+    if k.is_multiple_of(2) {
+        [at(i, b), at(i + 1, b), at(i, b + 1)]
+    } else {
+        [at(i + 1, b), at(i + 1, b + 1), at(i, b + 1)]
+    }
 }
 
 #[cfg(test)]
