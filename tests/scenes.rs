@@ -230,6 +230,18 @@ fn contact_is_found_whatever_surrounds_it() {
 }
 
 #[test]
+fn a_low_block_between_two_plates_touches_both() {
+    // Nearly all that is seen from its inside is its own top, which coincides with the upper plate.
+    let body = square("below", 0.0, true, "")
+        + &square("above", 0.02, false, "")
+        + &turned_box("block", [0.5, 0.5], [0.4, 0.4], [0.0, 0.02], 0.0, "");
+    let stage = scene(&body).at(0).unwrap();
+    for (name, expected) in [("below", 0.36), ("above", 0.36), ("block-top", 0.0), ("block-bottom", 0.0)] {
+        assert!((area_of(&stage, name) - expected).abs() < 1e-14, "{name}: {}", area_of(&stage, name));
+    }
+}
+
+#[test]
 fn a_thin_plate_loses_nothing() {
     for surroundings in ["", "room"] {
         let mut body = square("up", 0.5, true, "patches = [2, 2]") + &square("down", 0.5, false, "patches = [3, 3]");
@@ -245,7 +257,7 @@ fn a_thin_plate_loses_nothing() {
 }
 
 #[test]
-fn a_wall_between_two_rooms_is_a_thin_plate() {
+fn walls_between_rooms_are_thin_plates() {
     let room = |name: &str, x: f64| {
         let (l, r) = (x, x + 1.0);
         let faces = [
@@ -258,9 +270,14 @@ fn a_wall_between_two_rooms_is_a_thin_plate() {
         ];
         faces.iter().enumerate().map(|(k, c)| surface(&format!("{name}-{k}"), name, c, "")).collect::<String>()
     };
-    let stage = scene(&(room("left", 0.0) + &room("right", 1.0))).at(0).unwrap();
-    assert_eq!(present(&stage), 12);
-    assert_eq!(stage.facets.iter().filter(|f| !f.twins.is_empty()).count(), 2);
+    let row = room("left", 0.0) + &room("middle", 1.0) + &room("right", 2.0);
+    let one = row.replace("\"left\"", "\"house\"").replace("\"middle\"", "\"house\"").replace("\"right\"", "\"house\"");
+    for body in [row, one] {
+        let stage = scene(&body).at(0).unwrap();
+        assert_eq!(present(&stage), 18);
+        assert_eq!(stage.areas(), [1.0; 18]);
+        assert_eq!(stage.facets.iter().filter(|f| !f.twins.is_empty()).count(), 4);
+    }
 }
 
 #[test]
