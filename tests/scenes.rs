@@ -230,6 +230,18 @@ fn contact_is_found_whatever_surrounds_it() {
 }
 
 #[test]
+fn a_face_with_a_vertex_written_twice_is_in_contact_like_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    // A tetrahedron standing on the floor; the first two vertices are one point.
+    let obj = "v .2 .2 0\nv .2 .2 0\nv .2 .6 0\nv .6 .2 0\nv .3 .3 .5\nf 1 2 3 4\nf 1 4 5\nf 4 3 5\nf 3 1 5\n";
+    std::fs::write(folder.path().join("m.obj"), obj).unwrap();
+    let body = square("floor", 0.0, true, "") + "[[surface]]\nname = \"m\"\nmaterial = \"m\"\nmesh = \"m.obj\"\n";
+    let stage = scene_in(folder.path(), &body).at(0).unwrap();
+    assert_eq!(stage.patches[1].area, 0.0);
+    assert!((area_of(&stage, "floor") - 0.92).abs() < 1e-14);
+}
+
+#[test]
 fn a_low_block_between_two_plates_touches_both() {
     // Nearly all that is seen from its inside is its own top, which coincides with the upper plate.
     let body = square("below", 0.0, true, "")

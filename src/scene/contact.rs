@@ -7,7 +7,7 @@
 
 use super::tree::{Bounds, BoxTree, meet};
 use super::{Facet, Region};
-use crate::math::{DVec3, Frame, area, diameter, intersect_convex, subtract_convex};
+use crate::math::{DVec3, Frame, area, centroid, diameter, intersect_convex, subtract_convex};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -141,9 +141,9 @@ impl Survey<'_> {
     /// True if the inside of a solid lies before facet `i`, where `j` coincides with it.
     fn solid_before(&self, i: u32, j: u32, place: &[DVec3]) -> bool {
         let normal = self.facets[i as usize].normal;
-        let along = place[1] - place[0];
-        let frame = Frame::with_x_axis(normal, along);
-        let origin = crate::math::centroid(place);
+        // Not along an edge of the overlap: clipping leaves edges of no length.
+        let frame = Frame::with_x_axis(normal, normal.any_orthonormal_vector());
+        let origin = centroid(place);
         // Backs count up, all else down.
         let mut lead: i32 = 0;
         for (left, direction) in (0..FAN).rev().zip(&self.fan) {
