@@ -185,7 +185,7 @@ fn a_front_beats_a_back_where_plates_coincide() {
 fn the_own_plane_is_never_met() {
     let room = box_polygons(DVec3::ZERO, DVec3::new(4.0, 3.0, 2.5), true);
     for turn in [0.0, 0.2, 1.1] {
-        let stage = Stage::from_polygons(&rotated(&tessellated(&room, 9), odd_axis(), turn));
+        let stage = Stage::from_polygons(&rotated(&tessellated(&room, 9, 9), odd_axis(), turn));
         let groups = plane_groups(&stage);
         let batches = batches(&stage, 1, 300, 6);
         let exact: Vec<Box<dyn RayKernel>> = vec![Box::new(BuiltinKernel::new(&stage))];

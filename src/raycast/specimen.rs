@@ -69,12 +69,12 @@ pub fn rotated(polygons: &[Vec<DVec3>], axis: DVec3, angle: f64) -> Vec<Vec<DVec
     polygons.iter().map(|p| p.iter().map(|v| m * *v).collect()).collect()
 }
 
-/// Every quadrilateral cut into `n` x `n`, and each of those into two triangles.
-pub fn tessellated(quads: &[Vec<DVec3>], n: u32) -> Vec<Vec<DVec3>> {
+/// Every quadrilateral cut into `na` x `nb`, and each of those into two triangles.
+pub fn tessellated(quads: &[Vec<DVec3>], na: u32, nb: u32) -> Vec<Vec<DVec3>> {
     let mut triangles = Vec::new();
     for q in quads {
         let map = crate::math::Bilinear::new([q[0], q[1], q[2], q[3]]);
-        for cell in (0..n * n).map(|k| map.cell(k % n, k / n, n, n)) {
+        for cell in (0..na * nb).map(|k| map.cell(k % na, k / na, na, nb)) {
             triangles.push(vec![cell[0], cell[1], cell[2]]);
             triangles.push(vec![cell[0], cell[2], cell[3]]);
         }
@@ -84,7 +84,7 @@ pub fn tessellated(quads: &[Vec<DVec3>], n: u32) -> Vec<Vec<DVec3>> {
 
 /// A closed bumpy ball about the origin, radius about 1, faces outward (or inward): `12 n^2` triangles.
 pub fn bumpy_ball(n: u32, inward: bool) -> Vec<Vec<DVec3>> {
-    let cube = tessellated(&box_polygons(DVec3::NEG_ONE, DVec3::ONE, inward), n);
+    let cube = tessellated(&box_polygons(DVec3::NEG_ONE, DVec3::ONE, inward), n, n);
     let bump = |v: DVec3| {
         let u = v.normalize();
         u * (1.0 + 0.05 * (7.0 * u.x).sin() * (5.0 * u.y + 1.0).cos() * (6.0 * u.z).sin())
