@@ -5,7 +5,7 @@
 //! `timing.json` (the clock, apart from everything else).
 
 use super::{BandNames, FileError, SolutionFormat, npz, write_solution};
-use crate::scene::Stage;
+use crate::scene::{Finding, Stage};
 use crate::solution::{Provenance, Replicates, SelfCheck};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -37,6 +37,8 @@ pub struct StoredReference {
     pub self_check: SelfCheck,
     /// Relative error after each wave of rays: (rays per patch, error in the norm of eq. 7).
     pub waves: Vec<(u64, f64)>,
+    /// What the scene doctor found.
+    pub findings: Vec<Finding>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -49,6 +51,8 @@ struct Manifest {
     provenance: Provenance,
     self_check: SelfCheck,
     waves: Vec<(u64, f64)>,
+    #[serde(default)]
+    findings: Vec<Finding>,
     sha256: BTreeMap<String, String>,
 }
 
@@ -77,6 +81,7 @@ impl StoredReference {
             provenance: self.provenance.clone(),
             self_check: self.self_check.clone(),
             waves: self.waves.clone(),
+            findings: self.findings.clone(),
             sha256: files.iter().map(|(name, bytes)| (name.clone(), sha256(bytes))).collect(),
         };
         files.push((MANIFEST.to_string(), json(&manifest)));
@@ -143,6 +148,7 @@ impl StoredReference {
             provenance: manifest.provenance,
             self_check: manifest.self_check,
             waves: manifest.waves,
+            findings: manifest.findings,
         })
     }
 }

@@ -55,6 +55,7 @@ pub(crate) fn record() -> Record {
             ("Reference".into(), "closed form, direct light only".into()),
         ],
         notices: vec!["surface \"red wall\": a notice of the scene".into()],
+        findings: Vec::new(),
         replay: "etalon check point-lamps.csv --reference room.ref --max-rms 5%".into(),
     }
 }

@@ -7,6 +7,7 @@ mod build;
 mod contact;
 mod divide;
 mod error;
+mod finding;
 mod hash;
 mod model;
 mod numbering;
@@ -18,6 +19,7 @@ mod tree;
 
 pub use contact::COINCIDENCE_TOLERANCE;
 pub use error::SceneError;
+pub use finding::{Consequence, Finding, FindingKind, Place, Severity};
 pub use model::{Edit, Face, Grid, Material, Scene, Surface, Transform};
 pub use numbering::{MAX_ELEMENTS, MAX_PATCHES};
 pub use region::Region;

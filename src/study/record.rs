@@ -1,7 +1,7 @@
 //! The finished record of a comparison: all a report needs, nothing left to compute.
 
 use crate::metrics::{Comparison, Decision};
-use crate::scene::Stage;
+use crate::scene::{Finding, Stage};
 use crate::solution::Radiosity;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +28,9 @@ pub struct Record {
     pub provenance: Vec<(String, String)>,
     /// Things the reader has to know: self-check findings, notices of the scene.
     pub notices: Vec<String>,
+    /// What the scene doctor found.
+    #[serde(default)]
+    pub findings: Vec<Finding>,
     /// The command that repeats this run.
     pub replay: String,
 }

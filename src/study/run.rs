@@ -31,6 +31,7 @@ pub fn reference(
         provenance: reference.provenance.clone(),
         self_check: reference.self_check.clone(),
         waves: reference.waves.clone(),
+        findings: Vec::new(),
     };
     Ok((stored, reference))
 }

@@ -134,6 +134,10 @@ fn run(args: &CompareArgs, limits: Option<Limits>, kernel: KernelKind, console: 
         settings: settings(args, limits.as_ref()),
         provenance: provenance(&against, &stage),
         notices: notices(args, &against),
+        findings: match &against {
+            Against::Reference(r) => r.findings.clone(),
+            Against::Solution(_) => Vec::new(),
+        },
         replay: replay(args, limits.as_ref()),
         stage,
     };

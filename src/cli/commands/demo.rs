@@ -64,6 +64,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
         settings: settings(&options, &method),
         provenance: super::check::provenance(&Against::Reference(stored), &stage),
         notices: Vec::new(),
+        findings: Vec::new(),
         replay: replay(output),
         stage: stage.clone(),
     };
