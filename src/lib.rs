@@ -1,5 +1,6 @@
 //! **etalon**: a ray-traced reference validator and error-metric toolkit for radiosity and view factors.
 pub mod cli;
+pub mod doctor;
 pub mod estimate;
 pub mod formfactor;
 pub mod io;

@@ -1,10 +1,12 @@
 //! Double-precision vectors, frames, convex polygons and compensated sums. Knows nobody.
 
+mod boxes;
 mod frame;
 mod polygon;
 mod quad;
 mod sum;
 
+pub use boxes::{Bounds, BoxTree};
 pub use frame::Frame;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use polygon::{

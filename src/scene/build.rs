@@ -6,7 +6,6 @@ use super::numbering::{FaceNumbers, Numbering};
 use super::states::Standing;
 use super::{Element, Face, Facet, NO_FACET, Patch, Region, Scene, SceneError, Stage, StageSurface, Surface};
 use crate::math::{DVec3, area, unit_normal};
-use std::collections::BTreeMap;
 
 impl Scene {
     /// The scene after its first `state` edits: divided, numbered, with what is in contact left out.
@@ -15,7 +14,7 @@ impl Scene {
     pub fn at(&self, state: usize) -> Result<Stage, SceneError> {
         let standing = Standing::after(self, state)?;
         let numbering = Numbering::of(self)?;
-        let (facets, overlaps) = self.coincidences(&standing, &numbering, state)?;
+        let (facets, overlaps) = self.coinciding(&standing, &numbering, state)?;
         let (mut facets, overlaps) = without_hidden(facets, overlaps);
         for overlap in overlaps.iter().filter(|o| o.relation != Relation::SameFacing) {
             facets[overlap.first as usize].twins.push(overlap.second);
@@ -42,33 +41,12 @@ impl Scene {
         })
     }
 
-    /// What is worth telling about the geometry of a state: meshes whose faces overlap facing the same way.
-    /// Fails as [`Scene::at`] does, at less cost.
-    pub fn survey(&self, state: usize) -> Result<Vec<String>, SceneError> {
-        let standing = Standing::after(self, state)?;
-        let (facets, overlaps) = self.coincidences(&standing, &Numbering::of(self)?, state)?;
-        let mut pairs: BTreeMap<(u32, u32), (usize, f64)> = BTreeMap::new();
-        for o in overlaps.iter().filter(|o| o.radiates_twice(&facets)) {
-            let key = (facets[o.first as usize].surface, facets[o.second as usize].surface);
-            let (count, total) = pairs.entry(key).or_default();
-            *count += 1;
-            *total += area(&o.polygon);
-        }
-        let name = |i: u32| &self.surfaces[i as usize].name;
-        Ok(pairs
-            .into_iter()
-            .map(|((a, b), (count, total))| {
-                format!(
-                    "surfaces \"{}\" and \"{}\": {count} pairs of mesh faces overlap in one plane and radiate to the \
-                     same side ({total:.3e} m^2); the later face leaves that area to the earlier one",
-                    name(a),
-                    name(b)
-                )
-            })
-            .collect())
+    /// The facets of a state and how they coincide.
+    pub(super) fn coincidences(&self, state: usize) -> Result<(Vec<Facet>, Vec<Overlap>), SceneError> {
+        self.coinciding(&Standing::after(self, state)?, &Numbering::of(self)?, state)
     }
 
-    fn coincidences(
+    fn coinciding(
         &self,
         standing: &Standing,
         numbering: &Numbering,

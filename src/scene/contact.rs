@@ -5,9 +5,8 @@
 //! the inside of the box before it. A fan of directions decides: where more than half of what it meets first
 //! are backs of one-sided facets, the place is inside a solid, and the pair is a contact.
 
-use super::tree::{Bounds, BoxTree, meet};
 use super::{Facet, Region};
-use crate::math::{DVec3, Frame, area, centroid, diameter, intersect_convex, subtract_convex};
+use crate::math::{Bounds, BoxTree, DVec3, Frame, area, centroid, diameter, intersect_convex, subtract_convex};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -194,6 +193,23 @@ fn fan_direction(k: u32) -> DVec3 {
     let turn = f64::from(k) * PI * (3.0 - 5f64.sqrt());
     let r = (1.0 - z * z).sqrt();
     DVec3::new(r * turn.cos(), r * turn.sin(), z)
+}
+
+/// Distance at which a ray meets a facet, and whether it meets its dark side. A little generous at the edges,
+/// so that no ray slips through between neighbours.
+fn meet(facet: &Facet, origin: DVec3, direction: DVec3, tolerance: f64) -> Option<(f64, bool)> {
+    let speed = direction.dot(facet.normal);
+    if speed.abs() < 1e-9 {
+        return None;
+    }
+    let t = (facet.vertices[0] - origin).dot(facet.normal) / speed;
+    let p = origin + direction * t;
+    let corners = &facet.vertices;
+    let inside = (0..corners.len()).all(|k| {
+        let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+        facet.normal.cross(b - a).dot(p - a) >= -tolerance * a.distance(b)
+    });
+    inside.then_some((t, speed > 0.0 && facet.first_back_patch.is_none()))
 }
 
 /// What covers each side of each facet.

@@ -45,6 +45,8 @@ pub enum FindingKind {
     BuriedCentre,
     /// A needle of a patch.
     Sliver,
+    /// Nothing emits.
+    Dark,
     /// A patch whose light comes through so few rays that it needs many.
     ManyRays,
 }
@@ -68,6 +70,9 @@ pub struct Place {
     pub surfaces: Vec<String>,
     /// Patches concerned, by number: all of them, or the worst first where they are many.
     pub patches: Vec<u32>,
+    /// The number that makes each of them worth telling, where there is one: a covered share, a width in metres.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<f64>,
     /// A point to look at, metres.
     pub point: Option<[f64; 3]>,
 }
@@ -100,6 +105,7 @@ impl FindingKind {
             Self::BacksSeen => "backs-seen",
             Self::BuriedCentre => "buried-centre",
             Self::Sliver => "sliver",
+            Self::Dark => "dark",
             Self::ManyRays => "many-rays",
         }
     }

@@ -13,9 +13,9 @@ mod model;
 mod numbering;
 mod plain;
 mod region;
+mod shared;
 mod stage;
 mod states;
-mod tree;
 
 pub use contact::COINCIDENCE_TOLERANCE;
 pub use error::SceneError;
@@ -23,4 +23,5 @@ pub use finding::{Consequence, Finding, FindingKind, Place, Severity};
 pub use model::{Edit, Face, Grid, Material, Scene, Surface, Transform};
 pub use numbering::{MAX_ELEMENTS, MAX_PATCHES};
 pub use region::Region;
+pub use shared::SharedArea;
 pub use stage::{Element, Facet, NO_FACET, Patch, Stage, StageSurface};

@@ -30,12 +30,17 @@ pub fn stage(args: &SceneArgs, console: &Console) -> Result<Stage, Failure> {
 
 /// Reads a scene, telling its notices.
 pub fn scene(spec: &str, max_edge: Option<f64>, console: &Console) -> Result<Scene, Failure> {
+    let scene = open(spec, max_edge)?;
+    scene.notices.iter().for_each(|n| console.notice(n));
+    Ok(scene)
+}
+
+/// Reads a scene; its notices are for the caller to tell.
+pub fn open(spec: &str, max_edge: Option<f64>) -> Result<Scene, Failure> {
     if max_edge.is_some_and(|e| !(e > 0.0 && e.is_finite())) {
         return Err(Failure::input("--max-edge must be a length above 0, in metres"));
     }
-    let scene = open_scene(spec, &SceneOptions { max_edge_override: max_edge })?;
-    scene.notices.iter().for_each(|n| console.notice(n));
-    Ok(scene)
+    Ok(open_scene(spec, &SceneOptions { max_edge_override: max_edge })?)
 }
 
 /// Lays out a state.

@@ -4,8 +4,9 @@ use super::inputs;
 use crate::cli::args::{SceneArgs, SceneCommand};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
+use crate::doctor;
 use crate::io::{PatchFormat, write_patches};
-use crate::scene::Stage;
+use crate::scene::{Finding, Severity, Stage};
 use serde_json::json;
 use std::path::Path;
 
@@ -17,30 +18,47 @@ pub fn run(command: &SceneCommand, console: &Console) -> Result<u8, Failure> {
 }
 
 fn check(args: &SceneArgs, strict: bool, console: &Console) -> Result<u8, Failure> {
-    let scene = inputs::scene(&args.scene, args.max_edge, console)?;
+    let scene = inputs::open(&args.scene, args.max_edge)?;
     // Every state has to be sound, not only the one asked for.
     for state in 0..=scene.edits.len() {
         scene.at(state)?;
     }
     let stage = inputs::stage_of(&scene, args.state)?;
+    let findings = doctor::examine(&scene, &stage)?;
+    let grave = findings.iter().filter(|f| f.severity > Severity::Note).count();
     let present = stage.patches.iter().filter(|p| p.is_present()).count();
     let area: f64 = stage.areas().iter().sum();
     let text = format!(
-        "{}: sound. {} surfaces, {} patches ({present} present in state {}), {} elements, {area:.6} m^2, bands {}",
+        "{}: {}. {} surfaces, {} patches ({present} present in state {}), {} elements, {area:.6} m^2, bands {}{}",
         scene.name,
+        if grave == 0 { "sound" } else { "readable, but see the findings" },
         stage.surfaces.len(),
         stage.patch_count(),
         stage.state,
         stage.elements.len(),
         stage.photometry.bands.join(", "),
+        told(&findings),
     );
     let json = json!({
         "scene": scene.name, "scene_hash": stage.hash(), "state": stage.state, "states": scene.edits.len() + 1,
         "surfaces": stage.surfaces.len(), "patches": stage.patch_count(), "patches_present": present,
-        "elements": stage.elements.len(), "area": area, "bands": stage.photometry.bands, "findings": scene.notices,
+        "elements": stage.elements.len(), "area": area, "bands": stage.photometry.bands, "findings": findings,
     });
     console.result(&text, &json);
-    Ok(if strict && !scene.notices.is_empty() { exit::FAIL } else { exit::DONE })
+    Ok(if strict && grave > 0 { exit::FAIL } else { exit::DONE })
+}
+
+/// The findings as paragraphs, those of one kind together with the mend told once.
+fn told(findings: &[Finding]) -> String {
+    let mut text = String::new();
+    for alike in findings.chunk_by(|a, b| (a.kind, a.severity, &a.mend) == (b.kind, b.severity, &b.mend)) {
+        for f in alike {
+            text += &format!("\n{:>7}: {}: {}", f.severity.name(), f.kind.name(), f.what);
+            text += &f.consequence.as_ref().map_or(String::new(), |c| format!("\n         {}", c.text));
+        }
+        text += &format!("\n   mend: {}", alike[0].mend);
+    }
+    text
 }
 
 fn patches(args: &SceneArgs, output: &Path, console: &Console) -> Result<u8, Failure> {

@@ -11,7 +11,7 @@ use super::photometry::{materials, photometry, reserved};
 use super::raw;
 use super::source::Source;
 use super::surfaces::{replacement, surfaces};
-use crate::scene::{Edit, Scene, SceneError, Surface};
+use crate::scene::{Edit, Scene, SceneError, SharedArea, Surface};
 use crate::view::{Photometry, Primaries};
 use std::ops::Range;
 use std::path::Path;
@@ -198,8 +198,8 @@ fn settle(check: Check, file: &raw::File, mut scene: Scene) -> Checked<Scene> {
         if state > 0 && matches!(scene.edits[state - 1], Edit::Material { .. }) {
             continue;
         }
-        let found = scene.survey(state).map_err(|e| at_place(check, file, &scene, &e))?;
-        for notice in found {
+        let found = scene.shared_areas(state).map_err(|e| at_place(check, file, &scene, &e))?;
+        for notice in found.iter().map(SharedArea::notice) {
             if !scene.notices.contains(&notice) {
                 scene.notices.push(notice);
             }

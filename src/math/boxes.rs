@@ -1,36 +1,42 @@
-//! A tree of bounding boxes: which facets lie near a box, which along a ray.
+//! A tree of bounding boxes: what lies near a box, what along a ray.
 
-use super::Facet;
-use crate::math::DVec3;
+use super::DVec3;
 
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bounds {
+pub struct Bounds {
+    /// Lowest corner.
     pub lo: DVec3,
+    /// Highest corner.
     pub hi: DVec3,
 }
 
 impl Bounds {
-    const NOTHING: Self = Self { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY };
+    /// Holds no point; joined with another box it gives the other.
+    pub const NOTHING: Self = Self { lo: DVec3::INFINITY, hi: DVec3::NEG_INFINITY };
 
-    pub(super) fn of(points: &[DVec3]) -> Self {
+    /// The box of some points.
+    pub fn of(points: &[DVec3]) -> Self {
         points.iter().fold(Self::NOTHING, |b, p| Self { lo: b.lo.min(*p), hi: b.hi.max(*p) })
     }
 
-    pub(super) fn grown(self, by: f64) -> Self {
+    /// Larger by `by` on every side.
+    pub fn grown(self, by: f64) -> Self {
         Self { lo: self.lo - by, hi: self.hi + by }
     }
 
-    pub(super) fn joined(self, other: Self) -> Self {
+    /// The box of both.
+    pub fn joined(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    pub(super) fn meets(&self, other: &Self) -> bool {
+    /// True if they share a point.
+    pub fn meets(&self, other: &Self) -> bool {
         self.lo.cmple(other.hi).all() && other.lo.cmple(self.hi).all()
     }
 
     /// The second largest extent of the common part of two boxes that meet: how far it is from a mere edge.
-    pub(super) fn common_breadth(&self, other: &Self) -> f64 {
+    pub fn common_breadth(&self, other: &Self) -> f64 {
         let extent = self.hi.min(other.hi) - self.lo.max(other.lo);
         let mut sides = extent.to_array();
         sides.sort_by(f64::total_cmp);
@@ -53,7 +59,7 @@ struct Node {
 }
 
 /// Boxes by place, halved along their longest spread.
-pub(super) struct BoxTree {
+pub struct BoxTree {
     nodes: Vec<Node>,
     order: Vec<u32>,
     boxes: Vec<Bounds>,
@@ -62,7 +68,8 @@ pub(super) struct BoxTree {
 const LEAF: usize = 4;
 
 impl BoxTree {
-    pub(super) fn new(boxes: Vec<Bounds>) -> Self {
+    /// The tree over some boxes, which keep their numbers.
+    pub fn new(boxes: Vec<Bounds>) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: (0..boxes.len() as u32).collect(), boxes };
         if !tree.boxes.is_empty() {
             tree.split(0, tree.boxes.len());
@@ -91,12 +98,13 @@ impl BoxTree {
         at as u32
     }
 
-    pub(super) fn bounds(&self, i: u32) -> &Bounds {
+    /// Box number `i`.
+    pub fn bounds(&self, i: u32) -> &Bounds {
         &self.boxes[i as usize]
     }
 
     /// Calls `visit` for every box that meets `bounds`.
-    pub(super) fn near(&self, bounds: &Bounds, mut visit: impl FnMut(u32)) {
+    pub fn near(&self, bounds: &Bounds, mut visit: impl FnMut(u32)) {
         let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0u32] };
         while let Some(at) = stack.pop() {
             let node = &self.nodes[at as usize];
@@ -111,7 +119,7 @@ impl BoxTree {
     }
 
     /// Calls `visit` for boxes on the ray, near ones first; it returns how far is still of interest.
-    pub(super) fn along(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(u32) -> f64) {
+    pub fn along(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(u32) -> f64) {
         let inverse = direction.recip();
         let mut reach = f64::INFINITY;
         let entry = |at: u32| self.nodes[at as usize].bounds.entry(origin, inverse).map(|t| (t, at));
@@ -136,23 +144,6 @@ impl BoxTree {
     fn leaf(&self, node: &Node) -> impl Iterator<Item = u32> + '_ {
         self.order[node.start as usize..][..node.count as usize].iter().copied()
     }
-}
-
-/// Distance at which a ray meets a facet, and whether it meets its dark side. A little generous at the edges,
-/// so that no ray slips through between neighbours.
-pub(super) fn meet(facet: &Facet, origin: DVec3, direction: DVec3, tolerance: f64) -> Option<(f64, bool)> {
-    let speed = direction.dot(facet.normal);
-    if speed.abs() < 1e-9 {
-        return None;
-    }
-    let t = (facet.vertices[0] - origin).dot(facet.normal) / speed;
-    let p = origin + direction * t;
-    let corners = &facet.vertices;
-    let inside = (0..corners.len()).all(|k| {
-        let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-        facet.normal.cross(b - a).dot(p - a) >= -tolerance * a.distance(b)
-    });
-    inside.then_some((t, speed > 0.0 && facet.first_back_patch.is_none()))
 }
 
 #[cfg(test)]
