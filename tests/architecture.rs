@@ -23,7 +23,8 @@ const MAP: &[(&str, &[&str])] = &[
     ("io", &["math", "view", "scene", "solution"]),
     ("study", &["*"]),
     ("report", &["math", "stats", "view", "scene", "solution", "metrics", "render", "study", "io"]),
-    ("cli", &["*"]),
+    ("api", &["*", "-report"]),
+    ("cli", &["*", "-api"]),
 ];
 
 /// The map with the shorthand written out.

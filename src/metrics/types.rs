@@ -84,6 +84,23 @@ pub struct Limits {
     pub max_top1: Option<f64>,
 }
 
+impl Limits {
+    /// A limit on eq. 7 alone, a fraction.
+    pub fn rms(max: f64) -> Self {
+        Self { max_rms: Some(max), max_top1: None }
+    }
+
+    /// A limit on the top 1 % alone, a fraction.
+    pub fn top1(max: f64) -> Self {
+        Self { max_rms: None, max_top1: Some(max) }
+    }
+
+    /// The same with a limit on the top 1 % as well.
+    pub fn and_top1(self, max: f64) -> Self {
+        Self { max_top1: Some(max), ..self }
+    }
+}
+
 /// Pass, fail, or not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

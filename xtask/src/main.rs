@@ -10,6 +10,9 @@ cargo xtask test   the same set-up, then every test, also those of the feature e
 cargo xtask ci     formatting, lints and documentation, all with warnings as errors
 Further arguments go to `etalon demo` or `cargo test`.";
 
+/// Examples of the library that have to run, not only to compile.
+const EXAMPLES: [&str; 2] = ["check_a_solver", "examine_a_scene"];
+
 /// What stopped a task: what was run, and how it ended.
 struct Stopped(String);
 
@@ -47,7 +50,8 @@ fn demo(rest: &[String]) -> Result<(), Stopped> {
 fn test(rest: &[String]) -> Result<(), Stopped> {
     set_up()?;
     run(cargo().args(["test", "--release", "--workspace"]).args(rest))?;
-    run(cargo().args(["test", "--release", "--features", "embree4-rs", "--test", "kernels_agree"]))
+    run(cargo().args(["test", "--release", "--features", "embree4-rs", "--test", "kernels_agree"]))?;
+    EXAMPLES.iter().try_for_each(|e| run(cargo().args(["run", "--release", "--example", e])))
 }
 
 fn ci() -> Result<(), Stopped> {
