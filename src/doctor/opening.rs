@@ -20,9 +20,21 @@ pub(super) struct Opening {
     outline: Vec<[f64; 2]>,
 }
 
-/// All openings, in order of their first free edge.
+/// Openings that escaping rays are told apart by: the longest; shorter ones are counted with their neighbours.
+const MOST: usize = 32;
+/// Border edges up to which the distance of a ray is measured edge by edge.
+const FEW_EDGES: usize = 64;
+
+/// The longest openings, in order of their first free edge.
 pub(super) fn openings(skin: &Skin) -> Vec<Opening> {
-    clusters(skin).into_iter().map(|edges| Opening::new(&edges)).collect()
+    let mut all: Vec<Opening> = clusters(skin).into_iter().map(|edges| Opening::new(&edges)).collect();
+    if all.len() > MOST {
+        let mut lengths: Vec<f64> = all.iter().map(|o| o.length).collect();
+        lengths.sort_by(|a, b| b.total_cmp(a));
+        all.retain(|o| o.length >= lengths[MOST - 1]);
+        all.truncate(MOST);
+    }
+    all
 }
 
 /// Free edges joined where their ends are near each other.
@@ -79,15 +91,18 @@ impl Opening {
         b.hi - b.lo
     }
 
-    /// How far a ray misses the opening, metres; 0 if it goes through its outline.
-    fn miss(&self, origin: DVec3, direction: DVec3) -> f64 {
+    /// True if a ray goes through the outline.
+    fn is_crossed(&self, origin: DVec3, direction: DVec3) -> bool {
         let speed = direction.dot(self.axes[2]);
         let t = (self.centre - origin).dot(self.axes[2]) / speed;
-        if speed.abs() > 1e-9 && t > 0.0 {
-            let p = origin + direction * t - self.centre;
-            if inside(&self.outline, [p.dot(self.axes[0]), p.dot(self.axes[1])]) {
-                return 0.0;
-            }
+        let p = origin + direction * t - self.centre;
+        speed.abs() > 1e-9 && t > 0.0 && inside(&self.outline, [p.dot(self.axes[0]), p.dot(self.axes[1])])
+    }
+
+    /// How far a ray misses the border, metres.
+    fn miss(&self, origin: DVec3, direction: DVec3) -> f64 {
+        if self.edges.len() > FEW_EDGES {
+            return ray_to_segment(origin, direction, self.centre, self.centre);
         }
         self.edges.iter().map(|(a, b)| ray_to_segment(origin, direction, *a, *b)).fold(f64::INFINITY, f64::min)
     }
@@ -95,7 +110,16 @@ impl Opening {
 
 /// Number of the opening that an escaping ray leaves through, or passes nearest to.
 pub(super) fn left_through(openings: &[Opening], origin: DVec3, direction: DVec3) -> Option<usize> {
-    let misses = openings.iter().map(|o| o.miss(origin, direction)).enumerate();
+    let crossed: Vec<usize> = match openings {
+        [_] => return Some(0),
+        _ => (0..openings.len()).filter(|k| openings[*k].is_crossed(origin, direction)).collect(),
+    };
+    let among = match crossed[..] {
+        [one] => return Some(one),
+        [] => (0..openings.len()).collect(),
+        _ => crossed,
+    };
+    let misses = among.into_iter().map(|k| (k, openings[k].miss(origin, direction)));
     misses.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
 }
 

@@ -3,6 +3,7 @@
 use super::Patient;
 use super::opening::find;
 use super::probe::{Hits, RANDOMISATIONS, add};
+use super::skin::Link;
 use super::text::{LISTED, names, patches, percent, share, surfaces_of, verb};
 use crate::math::{Bounds, DVec3, area, centroid};
 use crate::scene::{Consequence, Finding, FindingKind, Place, Severity, Stage};
@@ -26,6 +27,8 @@ pub(super) enum How {
     Alone,
     /// With the whole body.
     Body,
+    /// A body that looks outward, in a scene whose light all leaves: solid, or a room inside out.
+    Lone,
 }
 
 /// Facets joined along edges.
@@ -46,14 +49,19 @@ pub(super) fn turned(patient: &Patient) -> Turned {
     let mut facets = vec![None; stage.facets.len()];
     let light = Light::of(patient);
     let mut bodies = Vec::new();
-    for group in groups {
-        let odd = minority(patient, &group, &light);
+    for (group, links) in groups.into_iter().zip(links_of(patient, &body_of)) {
+        let odd = minority(patient, &group, &links, &light);
         odd.iter().for_each(|f| facets[*f as usize] = Some(How::Alone));
         bodies.push(Body::new(stage, group, &free, &facets));
     }
-    for k in 0..bodies.len() {
-        if inside_out(&bodies, k, &light, &body_of, &facets) {
-            bodies[k].facets.iter().for_each(|f| facets[*f as usize] = Some(How::Body));
+    let all_leaves = (0..facets.len()).all(|f| light.escapes[f].is_none_or(|share| share > 0.999));
+    for (k, body) in bodies.iter().enumerate() {
+        let how = match all_leaves {
+            true => body.is_solid().then_some(How::Lone),
+            false => inside_out(&bodies, k, &light, &body_of, &facets).then_some(How::Body),
+        };
+        if how.is_some() {
+            body.facets.iter().for_each(|f| facets[*f as usize] = how);
         }
     }
     Turned { facets, bodies, body_of }
@@ -79,6 +87,14 @@ fn joined(patient: &Patient) -> (Vec<u32>, Vec<Vec<u32>>) {
         k as u32
     });
     (body_of.collect(), groups)
+}
+
+/// Links by body.
+fn links_of(patient: &Patient, body_of: &[u32]) -> Vec<Vec<Link>> {
+    let count = body_of.iter().max().map_or(0, |m| *m as usize + 1);
+    let mut links = vec![Vec::new(); count];
+    patient.skin.links.iter().for_each(|l| links[body_of[l.facets[0] as usize] as usize].push(*l));
+    links
 }
 
 fn free_facets(patient: &Patient) -> Vec<bool> {
@@ -123,10 +139,10 @@ impl Light {
 }
 
 /// The facets of a body that look the other way than most of it (by area, or by the light where that is even).
-fn minority(patient: &Patient, body: &[u32], light: &Light) -> Vec<u32> {
+fn minority(patient: &Patient, body: &[u32], links: &[Link], light: &Light) -> Vec<u32> {
     let stage = patient.stage;
     let mut joined: BTreeMap<u32, Vec<(u32, bool)>> = BTreeMap::new();
-    for l in patient.skin.links.iter().filter(|l| body.binary_search(&l.facets[0]).is_ok()) {
+    for l in links {
         let [a, b] = l.facets;
         joined.entry(a).or_default().push((b, l.agree));
         joined.entry(b).or_default().push((a, l.agree));
@@ -172,6 +188,11 @@ impl Body {
         self.volume > 0.0
     }
 
+    /// True if it is closed and looks outward.
+    fn is_solid(&self) -> bool {
+        self.closed && self.looks_outward() && self.facets.len() > 3
+    }
+
     fn holds(&self, other: &Self) -> bool {
         self.bounds.lo.cmple(other.bounds.lo).all() && other.bounds.hi.cmple(self.bounds.hi).all()
     }
@@ -189,11 +210,10 @@ fn inside_out(bodies: &[Body], k: usize, light: &Light, body_of: &[u32], turned:
         let from = light.on_back[*f as usize].iter().filter(|(s, h)| *h > 0 && body_of[*s as usize] != k as u32);
         viewers.extend(from.map(|(s, _)| body_of[*s as usize]));
     }
-    let outward = light.escaping(&body.facets) > OUTWARD;
     if viewers.is_empty() {
-        let alone = (0..bodies.len()).all(|b| light.escaping(&bodies[b].facets) > 0.999);
-        return body.closed && body.looks_outward() && body.facets.len() > 3 && alone;
+        return false;
     }
+    let outward = light.escaping(&body.facets) > OUTWARD;
     // A room that something sticks out of is seen from outside as well, but has that in it.
     let held = viewers.iter().any(|v| bodies[*v as usize].holds(body));
     let empty = (0..bodies.len()).all(|b| b == k || !bodies[b].bounds.meets(&body.bounds));
@@ -210,7 +230,7 @@ pub(super) fn findings(patient: &Patient, turned: &Turned) -> Vec<Finding> {
             Some(How::Alone) => {
                 groups.entry((How::Alone, patient.stage.facets[f as usize].surface)).or_default().push(f)
             }
-            Some(How::Body) => groups.entry((How::Body, turned.body_of[f as usize])).or_default().push(f),
+            Some(how) => groups.entry((*how, turned.body_of[f as usize])).or_default().push(f),
             None => {}
         }
     }
@@ -232,11 +252,14 @@ fn finding(patient: &Patient, turned: &Turned, how: How, facets: &[u32]) -> Find
     let what = match how {
         How::Alone => format!("{who} {face} the other way than what it is joined to"),
         How::Body => format!("{who} {are} inside out: the whole body shows its backs to where the light is"),
+        How::Lone => {
+            format!("{who} {are} closed and {} outward, where nothing is", verb(surfaces.len(), "looks", "look"))
+        }
     };
     let middle = centroid(&stage.facets[facets[0] as usize].vertices);
     Finding {
         kind: FindingKind::Winding,
-        severity: Severity::Error,
+        severity: if how == How::Lone && stage.enclosure != Some(true) { Severity::Warning } else { Severity::Error },
         place: Place {
             surfaces,
             patches: numbers.iter().copied().take(LISTED).collect(),
@@ -245,7 +268,10 @@ fn finding(patient: &Patient, turned: &Turned, how: How, facets: &[u32]) -> Find
         },
         what,
         consequence: Some(consequence(patient, turned, facets, &numbers)),
-        mend: "list the corners in the opposite order, or set two_sided = true if both sides are to radiate".into(),
+        mend: match how {
+            How::Lone => "if it is a room, list the corners in the opposite order".into(),
+            _ => "list the corners in the opposite order, or set two_sided = true if both sides are to radiate".into(),
+        },
     }
 }
 
