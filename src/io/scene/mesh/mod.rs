@@ -12,7 +12,7 @@ mod split;
 
 use super::check::{Check, Checked};
 use super::error::{Refusal, SceneFileError};
-use super::folder::{Folder, bytes_of, lossy};
+use super::folder::{Folder, bytes_of};
 use super::photometry::Materials;
 use super::polygon::Division;
 use super::source::Source;
@@ -154,9 +154,8 @@ fn load(folder: &Folder, spec: &MeshSpec) -> Checked<Loaded> {
     match format {
         Format::Obj => library::read_obj(bytes, &near),
         Format::Ply => {
-            let read = ply::parse(&bytes);
-            let source = Source::new(&file.path, if ply::is_text(&bytes) { lossy(bytes) } else { String::new() });
-            let mesh = read.map_err(|e| near.refusal(&source, e))?;
+            let source = Source::new(&file.path, String::from_utf8_lossy(ply::text(&bytes)).into_owned());
+            let mesh = ply::parse(&bytes).map_err(|e| near.refusal(&source, e))?;
             Ok(Loaded { mesh, source, format })
         }
         Format::Gltf => {

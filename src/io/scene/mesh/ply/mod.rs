@@ -9,9 +9,12 @@ use crate::io::scene::check::LARGEST;
 use crate::math::DVec3;
 use header::{Encoding, Header};
 
-/// True if the body is text, so that lines are places.
-pub(super) fn is_text(bytes: &[u8]) -> bool {
-    !matches!(Header::parse(bytes), Ok(Header { encoding: Encoding::LittleEndian | Encoding::BigEndian, .. }))
+/// The part of a file that has lines: all of it, or the header of a binary one.
+pub(super) fn text(bytes: &[u8]) -> &[u8] {
+    match Header::parse(bytes) {
+        Ok(Header { encoding: Encoding::LittleEndian | Encoding::BigEndian, body, .. }) => &bytes[..body],
+        _ => bytes,
+    }
 }
 
 /// Parses a file.
