@@ -1,5 +1,11 @@
 //! Every refusal of the scene format, with its place: one broken file for each, and what its message must say.
 
+#[path = "common/gltf.rs"]
+mod gltf;
+#[path = "broken/meshes.rs"]
+mod meshes;
+
+use assert_cmd::Command;
 use etalon::io::scene::{SceneOptions, open_scene, read_scene};
 use miette::Diagnostic;
 use std::collections::BTreeSet;
@@ -179,6 +185,66 @@ fn every_broken_scene_stands_in_the_table() {
     let there: BTreeSet<String> = there.filter(|f| f.ends_with(".toml")).collect();
     assert_eq!(listed, there);
     assert_eq!(listed.len(), BROKEN.len());
+}
+
+/// Writes the files of a case beside a scene that names the mesh.
+fn laid_out(case: &meshes::Case) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in &case.files {
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let material = if case.material { "material = \"m\"\n" } else { "" };
+    let text = format!(
+        "format = \"etalon-scene/1\"\n[[material]]\nname = \"m\"\nreflectance = 0.5\n\
+         [[surface]]\nname = \"s\"\n\nmesh = \"{}\"\n{material}",
+        case.file
+    );
+    std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+    folder
+}
+
+#[test]
+fn every_broken_mesh_is_refused_with_its_place_and_its_mend() {
+    let cases = meshes::all();
+    let mut wrong = Vec::new();
+    for case in &cases {
+        let folder = laid_out(case);
+        let name = &case.name;
+        match read_scene(&folder.path().join("scene.toml"), &SceneOptions::default()) {
+            Ok(_) => wrong.push(format!("{name}: accepted")),
+            Err(e) => {
+                let line = e.to_string();
+                let missing: Vec<_> = case.parts.iter().filter(|p| !line.contains(p.as_str())).collect();
+                if !missing.is_empty() || line.contains('\n') || line.len() > 500 {
+                    wrong.push(format!("{name}: {line}\n    lacks {missing:?}"));
+                }
+                if e.help().is_none() || !e.place().contains("scene.toml:8, surface \"s\"") {
+                    wrong.push(format!("{name}: no mend, or not led from the scene file: {line}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let names: BTreeSet<&str> = cases.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names.len(), cases.len());
+    assert!(cases.len() + BROKEN.len() >= 190, "{}", cases.len() + BROKEN.len());
+}
+
+/// Meshes given as scenes are refused as well, unless only their materials are wrong: those become grey.
+#[test]
+fn broken_meshes_given_as_scenes_end_with_exit_code_2() {
+    for case in meshes::all().iter().filter(|c| c.material && c.file != "m.stl").step_by(5) {
+        let folder = laid_out(case);
+        let run = Command::cargo_bin("etalon")
+            .unwrap()
+            .args(["scene", "check"])
+            .arg(folder.path().join(&case.file))
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(2), "{}: {said}", case.name);
+        assert!(said.contains(&case.file) && run.stdout.is_empty(), "{}: {said}", case.name);
+    }
 }
 
 #[test]

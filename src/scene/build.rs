@@ -2,9 +2,10 @@
 
 use super::contact::{Covers, Overlap, Relation, coincidences};
 use super::divide::{Divider, reversed};
+use super::names::Names;
 use super::numbering::{FaceNumbers, Numbering};
 use super::states::Standing;
-use super::{Element, Face, Facet, NO_FACET, Patch, Region, Scene, SceneError, Stage, StageSurface, Surface};
+use super::{Element, Face, Facet, NO_FACET, Patch, Region, Scene, SceneError, Stage};
 use crate::math::{DVec3, area, unit_normal};
 
 impl Scene {
@@ -14,26 +15,26 @@ impl Scene {
     pub fn at(&self, state: usize) -> Result<Stage, SceneError> {
         let standing = Standing::after(self, state)?;
         let numbering = Numbering::of(self)?;
-        let (facets, overlaps) = self.coinciding(&standing, &numbering, state)?;
+        let names = Names::of(self);
+        let (facets, overlaps) = self.coinciding(&standing, &numbering, &names, state)?;
         let (mut facets, overlaps) = without_hidden(facets, overlaps);
         for overlap in overlaps.iter().filter(|o| o.relation != Relation::SameFacing) {
             facets[overlap.first as usize].twins.push(overlap.second);
             facets[overlap.second as usize].twins.push(overlap.first);
         }
-        let (mut patches, mut elements) = self.absent_patches(&numbering);
-        self.mark_standing(&standing, &numbering, &mut patches);
+        let (mut patches, mut elements) = self.absent_patches(&numbering, &names);
+        self.mark_standing(&standing, &numbering, &names, &mut patches);
         let covers = Covers::of(&facets, &overlaps);
         for (index, facet) in facets.iter().enumerate() {
             place_facet(facet, index as u32, &covers, &mut patches, &mut elements);
         }
-        let names = |s: &Surface| StageSurface { name: s.name.clone(), object: s.object.clone() };
         Ok(Stage {
             name: self.name.clone(),
             state,
             photometry: self.photometry.clone(),
             enclosure: self.enclosure,
             materials: standing.materials,
-            surfaces: self.surfaces.iter().map(names).collect(),
+            surfaces: names.list,
             cameras: self.cameras.clone(),
             facets,
             patches,
@@ -43,29 +44,31 @@ impl Scene {
 
     /// The facets of a state and how they coincide.
     pub(super) fn coincidences(&self, state: usize) -> Result<(Vec<Facet>, Vec<Overlap>), SceneError> {
-        self.coinciding(&Standing::after(self, state)?, &Numbering::of(self)?, state)
+        self.coinciding(&Standing::after(self, state)?, &Numbering::of(self)?, &Names::of(self), state)
     }
 
     fn coinciding(
         &self,
         standing: &Standing,
         numbering: &Numbering,
+        names: &Names,
         state: usize,
     ) -> Result<(Vec<Facet>, Vec<Overlap>), SceneError> {
-        let facets = self.facets(standing, numbering);
-        let overlaps = coincidences(&facets, &self.object_numbers());
-        self.refuse_overlaps(&facets, &overlaps, state)?;
+        let facets = self.facets(standing, numbering, names);
+        let overlaps = coincidences(&facets, &self.object_numbers(names));
+        self.refuse_overlaps(&facets, &overlaps, names, state)?;
         Ok((facets, overlaps))
     }
 
-    fn object_numbers(&self) -> Vec<u32> {
-        let names = self.objects();
-        let number = |name: &str| names.binary_search(&name).unwrap_or_default() as u32;
-        self.surfaces.iter().map(|s| number(&s.object)).collect()
+    /// Number of the object that each name of a surface belongs to.
+    fn object_numbers(&self, names: &Names) -> Vec<u32> {
+        let objects = self.objects();
+        let number = |name: &str| objects.binary_search(&name).unwrap_or_default() as u32;
+        names.list.iter().map(|s| number(&s.object)).collect()
     }
 
     /// The polygons that stand there, in order of surface and face.
-    fn facets(&self, standing: &Standing, numbering: &Numbering) -> Vec<Facet> {
+    fn facets(&self, standing: &Standing, numbering: &Numbering, names: &Names) -> Vec<Facet> {
         let mut facets = Vec::new();
         for (index, surface) in self.surfaces.iter().enumerate().filter(|(i, _)| standing.stands[*i]) {
             for (face, (corners, numbers)) in
@@ -74,7 +77,7 @@ impl Scene {
                 facets.push(Facet {
                     vertices: corners.clone(),
                     normal: unit_normal(corners),
-                    surface: index as u32,
+                    surface: names.of_face(index, face),
                     grid: face.patches,
                     elements: face.elements,
                     first_patch: numbers.first,
@@ -87,7 +90,7 @@ impl Scene {
     }
 
     /// All patches and elements as if no object were there.
-    fn absent_patches(&self, numbering: &Numbering) -> (Vec<Patch>, Vec<Element>) {
+    fn absent_patches(&self, numbering: &Numbering, names: &Names) -> (Vec<Patch>, Vec<Element>) {
         let mut patches = vec![nothing(); numbering.patch_count()];
         let mut elements = vec![no_element(); numbering.element_count()];
         // Heirs come last and change nothing here: a number is named after the surface that had it first.
@@ -98,7 +101,7 @@ impl Scene {
                     if !patch.elements.is_empty() {
                         continue;
                     }
-                    (patch.surface, patch.material) = (index as u32, face.material);
+                    (patch.surface, patch.material) = (names.of_face(index, face), face.material);
                     (patch.a, patch.b) = face.patches.place(k);
                     patch.elements = numbering.elements_of(number);
                     for (k, e) in patch.elements.clone().enumerate() {
@@ -112,20 +115,26 @@ impl Scene {
     }
 
     /// Names and materials of the surfaces that stand there, which may have taken over numbers of others.
-    fn mark_standing(&self, standing: &Standing, numbering: &Numbering, patches: &mut [Patch]) {
+    fn mark_standing(&self, standing: &Standing, numbering: &Numbering, names: &Names, patches: &mut [Patch]) {
         for (index, surface) in self.surfaces.iter().enumerate().filter(|(i, _)| standing.stands[*i]) {
             for (face, numbers) in surface.faces.iter().zip(&numbering.faces[index]) {
                 for (number, _) in numbers_of(face, *numbers) {
                     let patch = &mut patches[number as usize];
-                    (patch.surface, patch.material) = (index as u32, face.material);
+                    (patch.surface, patch.material) = (names.of_face(index, face), face.material);
                 }
             }
         }
     }
 
     /// Polygons of the file itself must not overlap facing the same way.
-    fn refuse_overlaps(&self, facets: &[Facet], overlaps: &[Overlap], state: usize) -> Result<(), SceneError> {
-        let surface = |facet: u32| facets[facet as usize].surface;
+    fn refuse_overlaps(
+        &self,
+        facets: &[Facet],
+        overlaps: &[Overlap],
+        names: &Names,
+        state: usize,
+    ) -> Result<(), SceneError> {
+        let surface = |facet: u32| names.owner(facets[facet as usize].surface);
         let written = |facet: u32| !self.surfaces[surface(facet) as usize].from_mesh;
         let refused = |o: &&Overlap| o.radiates_twice(facets) && written(o.first) && written(o.second);
         let Some(o) = overlaps.iter().find(refused) else { return Ok(()) };

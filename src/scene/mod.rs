@@ -10,6 +10,7 @@ mod error;
 mod finding;
 mod hash;
 mod model;
+mod names;
 mod numbering;
 mod plain;
 mod region;

@@ -47,8 +47,8 @@ pub struct Surface {
     pub object: String,
     /// One face for a polygon; all faces of a mesh in file order.
     pub faces: Vec<Face>,
-    /// Radiates from both sides.
-    pub two_sided: bool,
+    /// Names of the mesh's groups, in order of their first face; patches of a group belong to `name/group`.
+    pub groups: Vec<String>,
     /// True for meshes: overlaps are findings there, refusals in polygons.
     pub from_mesh: bool,
 }
@@ -64,6 +64,10 @@ pub struct Face {
     pub patches: Grid,
     /// Division of each patch into elements.
     pub elements: Grid,
+    /// Radiates from both sides.
+    pub two_sided: bool,
+    /// Index into [`Surface::groups`]; `None` for polygons and for mesh faces outside of all groups.
+    pub group: Option<u32>,
 }
 
 /// How a polygon is divided.

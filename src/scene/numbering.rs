@@ -36,11 +36,9 @@ impl Numbering {
                 faces.push(Vec::new());
                 continue;
             }
-            let fronts: u32 = surface.faces.iter().map(|f| f.patches.count() as u32).sum();
-            let (numbers, end) = in_order(&surface.faces, next, surface.two_sided.then_some(next + fronts));
-            for _ in 0..if surface.two_sided { 2 } else { 1 } {
-                per_patch.extend(surface.faces.iter().flat_map(counts));
-            }
+            let (numbers, end) = in_order(&surface.faces, next);
+            per_patch.extend(surface.faces.iter().flat_map(counts));
+            per_patch.extend(surface.faces.iter().filter(|f| f.two_sided).flat_map(counts));
             faces.push(numbers);
             next = end;
         }
@@ -72,16 +70,17 @@ fn counts(face: &Face) -> impl Iterator<Item = u32> {
     std::iter::repeat_n(face.elements.count() as u32, face.patches.count())
 }
 
-/// Numbers faces from `front` on, their backs from `back` on; and the number after the last.
-fn in_order(faces: &[Face], mut front: u32, mut back: Option<u32>) -> (Vec<FaceNumbers>, u32) {
+/// Numbers faces from `front` on, then the backs of those that have one; and the number after the last.
+fn in_order(faces: &[Face], mut front: u32) -> (Vec<FaceNumbers>, u32) {
+    let mut back = front + faces.iter().map(|f| f.patches.count() as u32).sum::<u32>();
     let mut numbers = Vec::with_capacity(faces.len());
     for face in faces {
         let n = face.patches.count() as u32;
-        numbers.push(FaceNumbers { first: front, first_back: back });
+        numbers.push(FaceNumbers { first: front, first_back: face.two_sided.then_some(back) });
         front += n;
-        back = back.map(|b| b + n);
+        back += if face.two_sided { n } else { 0 };
     }
-    (numbers, back.unwrap_or(front))
+    (numbers, back)
 }
 
 /// Surfaces that take over numbers, in the order of the edits, each with the surfaces it replaces.
@@ -123,24 +122,23 @@ fn patch_numbers(scene: &Scene, faces: &[Vec<FaceNumbers>], surfaces: &[usize]) 
 
 /// Old numbers for new faces, one to one; `None` where they do not fit.
 fn inherit(faces: &[Face], [fronts, backs]: &[Vec<(u32, u32)>; 2]) -> Option<Vec<FaceNumbers>> {
-    let total: usize = faces.iter().map(|f| f.patches.count()).sum();
-    if total != fronts.len() || !(backs.is_empty() || backs.len() == total) {
-        return None;
-    }
-    let mut at = 0;
+    let (mut fronts, mut backs) = (&fronts[..], &backs[..]);
     let mut numbers = Vec::with_capacity(faces.len());
     for face in faces {
-        let range = at..at + face.patches.count();
-        let run = |side: &[(u32, u32)]| {
-            let side = &side[range.clone()];
-            let fits = side.iter().enumerate().all(|(k, p)| p.0 == side[0].0 + k as u32);
-            (fits && side.iter().all(|p| p.1 as usize == face.elements.count())).then(|| side[0].0)
-        };
-        let first_back = if backs.is_empty() { None } else { Some(run(backs)?) };
-        numbers.push(FaceNumbers { first: run(fronts)?, first_back });
-        at = range.end;
+        let first = take_run(face, &mut fronts)?;
+        let first_back = if face.two_sided { Some(take_run(face, &mut backs)?) } else { None };
+        numbers.push(FaceNumbers { first, first_back });
     }
-    Some(numbers)
+    (fronts.is_empty() && backs.is_empty()).then_some(numbers)
+}
+
+/// Takes the numbers of one face off the front of a list, if they follow each other and have as many elements.
+fn take_run(face: &Face, side: &mut &[(u32, u32)]) -> Option<u32> {
+    let (run, rest) = side.split_at_checked(face.patches.count())?;
+    let first = run.first()?.0;
+    let fits = run.iter().enumerate().all(|(k, p)| *p == (first + k as u32, face.elements.count() as u32));
+    *side = rest;
+    fits.then_some(first)
 }
 
 impl Scene {
@@ -157,8 +155,7 @@ impl Scene {
             let (by, old) = (*by, live_before(self, at, object));
             let numbering = Numbering::of(self)?;
             let sides = patch_numbers(self, &numbering.faces, &old);
-            let backs_fit = self.surfaces[by].two_sided != sides[1].is_empty();
-            let fits = backs_fit && inherit(&self.surfaces[by].faces, &sides).is_some();
+            let fits = inherit(&self.surfaces[by].faces, &sides).is_some();
             if let Edit::Replace { same_numbers, .. } = &mut self.edits[at] {
                 *same_numbers = fits;
             }
@@ -168,11 +165,10 @@ impl Scene {
 
     /// Patches and elements must fit into numbers and memory.
     fn check_size(&self) -> Result<(), SceneError> {
-        let sides = |two_sided: bool| if two_sided { 2 } else { 1 };
         let (mut patches, mut elements) = (0u64, 0u64);
         for surface in &self.surfaces {
             for face in &surface.faces {
-                let n = face.patches.count() as u64 * sides(surface.two_sided);
+                let n = face.patches.count() as u64 * if face.two_sided { 2 } else { 1 };
                 patches = patches.saturating_add(n);
                 elements = elements.saturating_add(n.saturating_mul(face.elements.count() as u64));
             }

@@ -1,6 +1,7 @@
 //! Areas that two faces of one plane claim for the same side.
 
 use super::contact::Overlap;
+use super::names::Names;
 use super::{Facet, Scene, SceneError};
 use crate::math::{DVec3, area, centroid};
 use std::collections::BTreeMap;
@@ -37,10 +38,11 @@ impl Scene {
     /// Areas of meshes that radiate twice to one side in a state. Fails as [`Scene::at`] does, at less cost.
     pub fn shared_areas(&self, state: usize) -> Result<Vec<SharedArea>, SceneError> {
         let (facets, overlaps) = self.coincidences(state)?;
+        let names = Names::of(self);
+        let owner = |facet: u32| names.owner(facets[facet as usize].surface);
         let mut found: BTreeMap<(u32, u32), Sum> = BTreeMap::new();
         for o in overlaps.iter().filter(|o| o.radiates_twice(&facets)) {
-            let key = (facets[o.first as usize].surface, facets[o.second as usize].surface);
-            found.entry(key).or_default().add(o, &facets);
+            found.entry((owner(o.first), owner(o.second))).or_default().add(o, &facets);
         }
         let name = |i: u32| self.surfaces[i as usize].name.clone();
         Ok(found.into_iter().map(|((a, b), sum)| sum.named([name(a), name(b)])).collect())

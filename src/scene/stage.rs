@@ -34,7 +34,7 @@ pub struct Stage {
     pub cameras: Vec<Camera>,
 }
 
-/// Names of a surface.
+/// Names of a surface, or of a group of its mesh.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StageSurface {
     /// Name given in the file.

@@ -67,12 +67,13 @@ impl Polygons {
             4 => Grid::Quad { na: 1, nb: 1 },
             _ => Grid::Whole,
         };
-        let face = Face { vertices: corners, material: k as u32, patches: grid, elements };
+        let face =
+            Face { vertices: corners, material: k as u32, patches: grid, elements, two_sided: false, group: None };
         self.scene.surfaces.push(Surface {
             name: format!("s{k}"),
             object: format!("o{k}"),
             faces: vec![face],
-            two_sided: false,
+            groups: Vec::new(),
             from_mesh: true,
         });
         self

@@ -1,6 +1,7 @@
 //! Scenes that come with the program.
 
 use super::SceneOptions;
+use super::alone::{is_mesh, read_mesh};
 use super::check::known_names;
 use super::error::{Refusal, SceneFileError};
 use super::read::{parse_text, read_scene};
@@ -44,9 +45,13 @@ pub fn builtin(name: &str) -> Option<Scene> {
     parse_text(name, builtin_text(name)?, &SceneOptions::default()).ok()
 }
 
-/// Opens `builtin:NAME` or the scene file at a path.
+/// Opens `builtin:NAME`, the scene file at a path, or a mesh (`.obj`, `.ply`, `.gltf`, `.glb`) as a scene of one
+/// surface.
 pub fn open_scene(spec: &str, options: &SceneOptions) -> Result<Scene, SceneFileError> {
-    let Some(name) = spec.strip_prefix("builtin:") else { return read_scene(Path::new(spec), options) };
+    let Some(name) = spec.strip_prefix("builtin:") else {
+        let path = Path::new(spec);
+        return if is_mesh(path) { read_mesh(path, options) } else { read_scene(path, options) };
+    };
     match builtin_text(name) {
         Some(text) => parse_text(name, text, options),
         None => {

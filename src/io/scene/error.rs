@@ -129,6 +129,11 @@ impl SceneFileError {
         &self.details.message
     }
 
+    /// How to mend it.
+    pub(super) fn help_text(&self) -> &str {
+        &self.details.help
+    }
+
     /// What kind of thing is wrong.
     pub fn refusal(&self) -> Refusal {
         self.details.refusal

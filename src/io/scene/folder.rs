@@ -2,7 +2,6 @@
 
 use super::check::{Check, Checked};
 use super::error::Refusal;
-use super::source::Source;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
@@ -64,6 +63,16 @@ impl Folder {
 
 /// The text of a file; bytes that are not UTF-8 (comments in old encodings) are replaced.
 pub(super) fn text_of(path: &Path) -> Result<String, String> {
+    bytes_of(path).map(lossy)
+}
+
+/// Bytes as text; those that are not UTF-8 are replaced.
+pub(super) fn lossy(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned())
+}
+
+/// The bytes of a file of a size that can be read.
+pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
     let meta = std::fs::metadata(path).map_err(|e| plain(&e))?;
     if meta.is_dir() {
         return Err("it is a folder".into());
@@ -71,22 +80,7 @@ pub(super) fn text_of(path: &Path) -> Result<String, String> {
     if meta.len() > MAX_FILE {
         return Err(format!("it has {} bytes, more than the {MAX_FILE} that are read", meta.len()));
     }
-    let bytes = std::fs::read(path).map_err(|e| plain(&e))?;
-    Ok(match String::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(e) => String::from_utf8_lossy(e.as_bytes()).into_owned(),
-    })
-}
-
-/// Reads a located file.
-pub(super) fn open(check: Check, span: Range<usize>, path: &Path) -> Checked<Source> {
-    match text_of(path) {
-        Ok(text) => Ok(Source::new(path, text)),
-        Err(why) => {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            check.refuse(Refusal::Unreadable, span, format!("cannot read \"{name}\": {why}"), "check the file")
-        }
-    }
+    std::fs::read(path).map_err(|e| plain(&e))
 }
 
 /// What the system says, without its number.

@@ -1,5 +1,6 @@
-//! The scene file `etalon-scene/1` (TOML) and the meshes it names (OBJ with MTL).
+//! The scene file `etalon-scene/1` (TOML) and the meshes it names (OBJ with MTL, PLY, glTF).
 
+mod alone;
 mod builtin;
 mod cameras;
 mod check;
@@ -7,14 +8,11 @@ mod edits;
 mod error;
 mod folder;
 mod mesh;
-mod mtl;
-mod obj;
 mod photometry;
 mod polygon;
 mod raw;
 mod read;
 mod source;
-mod split;
 mod surfaces;
 
 pub use builtin::{builtin, builtin_names, builtin_text, open_scene};

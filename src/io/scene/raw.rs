@@ -70,8 +70,7 @@ pub(super) struct Surface {
     pub up: Option<Spanned<String>>,
     pub patches: Option<Spanned<Counts>>,
     pub elements: Option<Spanned<Counts>>,
-    #[serde(default)]
-    pub two_sided: bool,
+    pub two_sided: Option<bool>,
     pub texture: Option<Spanned<IgnoredAny>>,
 }
 

@@ -134,12 +134,17 @@ fn syntax(source: &Source, e: &toml::de::Error) -> SceneFileError {
 fn max_edge(check: Check, file: &raw::File, options: &SceneOptions) -> Checked<Option<f64>> {
     let own = file.discretisation.as_ref().and_then(|d| d.max_edge.as_ref());
     let own = own.map(|v| check.positive("max_edge", v)).transpose()?;
+    Ok(edge_asked(options)?.or(own))
+}
+
+/// The command line's largest edge.
+pub(super) fn edge_asked(options: &SceneOptions) -> Checked<Option<f64>> {
     match options.max_edge_override {
         Some(v) if v.is_nan() || v <= 0.0 => {
             Err(SceneFileError::whole("--max-edge", Refusal::Number, format!("the largest edge is {v}"))
                 .mend("give a length in metres greater than zero"))
         }
-        over => Ok(over.or(own)),
+        asked => Ok(asked),
     }
 }
 
@@ -193,19 +198,24 @@ fn edits(
 
 /// Looks at the scene as a whole, in every state.
 fn settle(check: Check, file: &raw::File, mut scene: Scene) -> Checked<Scene> {
-    scene.settle_replacements().map_err(|e| at_place(check, file, &scene, &e))?;
+    survey(&mut scene).map_err(|e| at_place(check, file, &scene, &e))?;
+    Ok(scene)
+}
+
+/// Looks at the geometry of every state, leaving notices.
+pub(super) fn survey(scene: &mut Scene) -> Result<(), SceneError> {
+    scene.settle_replacements()?;
     for state in 0..=scene.edits.len() {
         if state > 0 && matches!(scene.edits[state - 1], Edit::Material { .. }) {
             continue;
         }
-        let found = scene.shared_areas(state).map_err(|e| at_place(check, file, &scene, &e))?;
-        for notice in found.iter().map(SharedArea::notice) {
+        for notice in scene.shared_areas(state)?.iter().map(SharedArea::notice) {
             if !scene.notices.contains(&notice) {
                 scene.notices.push(notice);
             }
         }
     }
-    Ok(scene)
+    Ok(())
 }
 
 /// The counts, or else the name, of the surface with the most elements.

@@ -3,7 +3,7 @@
 use super::check::{Check, Checked};
 use super::error::Refusal;
 use super::folder::Folder;
-use super::mesh::{self, Gathered, MeshSpec};
+use super::mesh::{self, Fallback, Gathered, MeshFile, MeshSpec};
 use super::photometry::reserved;
 use super::polygon::{Division, polygon};
 use super::raw::{self, Numbers};
@@ -37,8 +37,8 @@ pub(super) fn surfaces(
         }
         reserved(check, "surface.texture", raw.texture.as_ref().map(Spanned::span))?;
         let object = raw.object.as_ref().map_or(Ok(DEFAULT_OBJECT.into()), |o| check.name("object name", o))?;
-        let faces = match (&raw.polygon, &raw.mesh) {
-            (Some(_), None) => vec![face(check, raw, max_edge, gathered)?],
+        let (faces, groups) = match (&raw.polygon, &raw.mesh) {
+            (Some(_), None) => (vec![face(check, raw, max_edge, gathered)?], Vec::new()),
             (None, Some(file)) => mesh_faces(check, folder, &name, raw, file, max_edge, gathered)?,
             (Some(_), Some(mesh)) => {
                 return check.refuse(
@@ -57,7 +57,7 @@ pub(super) fn surfaces(
                 );
             }
         };
-        surfaces.push(Surface { name, object, faces, two_sided: raw.two_sided, from_mesh: raw.mesh.is_some() });
+        surfaces.push(Surface { name, object, faces, groups, from_mesh: raw.mesh.is_some() });
     }
     Ok(surfaces)
 }
@@ -87,7 +87,8 @@ fn face(check: Check, raw: &raw::Surface, max_edge: Option<f64>, gathered: &Gath
     let material = gathered.materials.named(check, material)?;
     let division = Division { patches: raw.patches.as_ref(), elements: raw.elements.as_ref(), max_edge, mesh: false };
     let (patches, elements) = division.of(check, &vertices)?;
-    Ok(Face { vertices, material, patches, elements })
+    let two_sided = raw.two_sided.unwrap_or(false);
+    Ok(Face { vertices, material, patches, elements, two_sided, group: None })
 }
 
 fn mesh_faces(
@@ -98,24 +99,26 @@ fn mesh_faces(
     file: &Spanned<String>,
     max_edge: Option<f64>,
     gathered: &mut Gathered,
-) -> Checked<Vec<Face>> {
+) -> Checked<(Vec<Face>, Vec<String>)> {
     let material = raw.material.as_ref().map(|m| gathered.materials.named(check, m)).transpose()?;
     let spec = MeshSpec {
         surface: name,
-        file,
+        file: MeshFile::named(check, folder, file)?,
         scale: raw.scale.as_ref().map_or(Ok(1.0), |s| check.positive("scale", s))?,
         y_up: y_up(check, raw.up.as_ref())?,
+        two_sided: raw.two_sided,
         material,
-        fallback: None,
+        fallback: Fallback::Refuse,
         division: Division { patches: raw.patches.as_ref(), elements: raw.elements.as_ref(), max_edge, mesh: true },
     };
     mesh::faces(check, folder, &spec, gathered)
 }
 
-fn y_up(check: Check, up: Option<&Spanned<String>>) -> Checked<bool> {
+fn y_up(check: Check, up: Option<&Spanned<String>>) -> Checked<Option<bool>> {
     match up.map(|u| (u.get_ref().as_str(), u.span())) {
-        None | Some(("z", _)) => Ok(false),
-        Some(("y", _)) => Ok(true),
+        None => Ok(None),
+        Some(("z", _)) => Ok(Some(false)),
+        Some(("y", _)) => Ok(Some(true)),
         Some((other, span)) => check.refuse(
             Refusal::Key,
             span,
@@ -147,15 +150,16 @@ pub(super) fn replacement(
     let elements = raw.elements.as_ref().or(old_table.and_then(|t| t.elements.as_ref()));
     let spec = MeshSpec {
         surface: &name,
-        file,
+        file: MeshFile::named(check, folder, file)?,
         scale,
         y_up: y_up(check, raw.up.as_ref())?,
+        two_sided: old.faces.first().map(|f| f.two_sided),
         material: None,
-        fallback: old.faces.first().map(|f| f.material),
+        fallback: old.faces.first().map_or(Fallback::Refuse, |f| Fallback::Material(f.material)),
         division: Division { patches, elements, max_edge, mesh: true },
     };
-    let faces = mesh::faces(check, folder, &spec, gathered)?;
-    Ok(Surface { name, object: object.to_string(), faces, two_sided: old.two_sided, from_mesh: true })
+    let (faces, groups) = mesh::faces(check, folder, &spec, gathered)?;
+    Ok(Surface { name, object: object.to_string(), faces, groups, from_mesh: true })
 }
 
 fn one_scale<T>(check: Check, span: Range<usize>) -> Checked<T> {

@@ -1,6 +1,7 @@
 //! MTL material libraries: diffuse reflectance and emission.
 
-use super::obj::{LineError, fault, name_in, number};
+use super::model::{MeshFault, fault, number, shown};
+use super::obj::name_in;
 
 /// One material of a library.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +18,7 @@ pub(super) struct Mtl {
 }
 
 /// Parses a library.
-pub(super) fn parse(text: &str) -> Result<Vec<Mtl>, LineError> {
+pub(super) fn parse(text: &str) -> Result<Vec<Mtl>, MeshFault> {
     let mut materials: Vec<Mtl> = Vec::new();
     for (line, statement) in text.lines().enumerate().map(|(i, l)| (i + 1, l.split('#').next().unwrap_or_default())) {
         let mut words = statement.split_ascii_whitespace();
@@ -31,12 +32,7 @@ pub(super) fn parse(text: &str) -> Result<Vec<Mtl>, LineError> {
             continue;
         }
         let Some(material) = materials.last_mut() else {
-            let shown: String = keyword.chars().take(40).collect();
-            return fault(
-                line,
-                format!("\"{}\" before the first newmtl", shown.escape_debug()),
-                "is this an MTL file?",
-            );
+            return fault(line, format!("\"{}\" before the first newmtl", shown(keyword)), "is this an MTL file?");
         };
         let words: Vec<&str> = words.collect();
         match keyword {
@@ -56,7 +52,7 @@ pub(super) fn parse(text: &str) -> Result<Vec<Mtl>, LineError> {
 }
 
 /// Three numbers, or one for all three.
-fn colour(line: usize, words: &[&str]) -> Result<[f64; 3], LineError> {
+fn colour(line: usize, words: &[&str]) -> Result<[f64; 3], MeshFault> {
     match words {
         ["spectral" | "xyz", ..] => fault(line, "spectral and xyz colours are not read", "write three numbers: r g b"),
         [one] => Ok([number(line, one)?; 3]),
@@ -67,6 +63,7 @@ fn colour(line: usize, words: &[&str]) -> Result<[f64; 3], LineError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::model::At;
     use super::*;
 
     #[test]
@@ -78,7 +75,7 @@ mod tests {
         assert!(read[0].left_out.is_empty());
         assert_eq!(read[1].ke, Some(([5.0; 3], 6)));
         assert_eq!(read[1].left_out.len(), 1);
-        assert_eq!(parse("Kd 1 1 1\n").unwrap_err().line, 1);
-        assert_eq!(parse("newmtl a\nKd 1 red 1\n").unwrap_err().line, 2);
+        assert_eq!(parse("Kd 1 1 1\n").unwrap_err().at, At::Line(1));
+        assert_eq!(parse("newmtl a\nKd 1 red 1\n").unwrap_err().at, At::Line(2));
     }
 }
