@@ -25,7 +25,7 @@ pub use field::{Field, difference, in_standard_errors, luminance, luminance_std_
 pub use fit::{fit_camera, resized};
 pub use items::{item_colour, paint_items};
 pub use mesh::{Mesh, Vertex};
-pub use paint::{Raster, paint, paint_cells, paint_smooth};
+pub use paint::{Raster, paint, paint_cells, paint_field, paint_smooth};
 pub use scale::{Scale, Tick, area_percentile};
 pub use sheet::{Bar, Sheet, side_by_side};
 pub use vertices::Stencils;

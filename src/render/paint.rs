@@ -45,11 +45,22 @@ pub fn paint_smooth(visibility: &Visibility, mesh: &Mesh, colours: &[LinearRgb])
     })
 }
 
-/// Paints with the colour of each sample, asked as (pixel, sample, patch).
-fn paint_samples(
+/// Shades smoothly between one value per vertex, each value in its `colour`.
+pub fn paint_field(
     visibility: &Visibility,
-    colour: impl Fn(usize, usize, usize) -> Option<LinearRgb> + Sync,
+    mesh: &Mesh,
+    vertices: &[f64],
+    colour: impl Fn(f64) -> LinearRgb + Sync,
 ) -> Raster {
+    paint_samples(visibility, |pixel, k, patch| {
+        let point = visibility.point(mesh.stage(), pixel, k)?;
+        let cell = mesh.cell_at(patch, point);
+        (!mesh.vertices_of(cell).is_empty()).then(|| colour(mesh.value_at(cell, point, vertices)))
+    })
+}
+
+/// Paints with the colour of each sample, asked as (pixel, sample, patch).
+fn paint_samples(visibility: &Visibility, colour: impl Fn(usize, usize, usize) -> Option<LinearRgb> + Sync) -> Raster {
     let [width, height] = visibility.size();
     let pixel = |p: usize| mix(visibility, &colour, p, width as usize);
     let rgba = (0..visibility.pixel_count()).into_par_iter().flat_map_iter(pixel).collect();
