@@ -79,9 +79,78 @@ pub enum PerLevel {
     Element,
 }
 
+/// Width and height of a picture, written 640x480.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pixels(pub [u32; 2]);
+
+/// Largest width and height of a picture, pixels.
+const MOST_PIXELS: u32 = 16_384;
+
+impl FromStr for Pixels {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |s: &str| s.parse().ok().filter(|n| (1..=MOST_PIXELS).contains(n));
+        let size = text.split_once(['x', 'X']).and_then(|(w, h)| Some(Self([side(w)?, side(h)?])));
+        size.ok_or_else(|| {
+            format!("\"{text}\" is not a size: write WIDTHxHEIGHT in pixels (640x480), at most {MOST_PIXELS} each")
+        })
+    }
+}
+
+/// What a picture in false colours shows.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Quantity {
+    /// Luminance.
+    Luminance,
+    /// Standard error of the luminance.
+    StdErr,
+    /// The same as a share of the luminance.
+    RelativeStdErr,
+    /// Radiosity in one band.
+    Band(String),
+}
+
+impl FromStr for Quantity {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match (text, text.strip_prefix("band:")) {
+            ("luminance", _) => Ok(Self::Luminance),
+            ("std-err", _) => Ok(Self::StdErr),
+            ("relative-std-err", _) => Ok(Self::RelativeStdErr),
+            (_, Some(name)) if !name.is_empty() => Ok(Self::Band(name.into())),
+            _ => Err(format!("\"{text}\" is not a quantity: write luminance, std-err, relative-std-err or band:NAME")),
+        }
+    }
+}
+
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Luminance => f.write_str("luminance"),
+            Self::StdErr => f.write_str("std-err"),
+            Self::RelativeStdErr => f.write_str("relative-std-err"),
+            Self::Band(name) => write!(f, "band:{name}"),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sizes_and_quantities() {
+        assert_eq!("640x480".parse(), Ok(Pixels([640, 480])));
+        for bad in ["640", "0x10", "-1x5", "10x20x30", "99999x1", "x", "640 x 480"] {
+            assert!(bad.parse::<Pixels>().is_err(), "{bad}");
+        }
+        for good in ["luminance", "std-err", "relative-std-err", "band:450 nm"] {
+            assert_eq!(good.parse::<Quantity>().unwrap().to_string(), good);
+        }
+        assert!("band:".parse::<Quantity>().is_err() && "r".parse::<Quantity>().is_err());
+    }
 
     #[test]
     fn fractions_and_spans() {

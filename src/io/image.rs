@@ -93,6 +93,21 @@ pub fn exr(width: u32, height: u32, channels: &[Channel], comments: &str) -> Res
     Ok(bytes.into_inner())
 }
 
+/// Names that viewers know (R, G, B, Y) where the bands have them, else the bands' own, without the dots that
+/// would make layers of them; made different where two are alike.
+pub fn channel_names(bands: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for (k, band) in bands.iter().enumerate() {
+        let name = match band.to_lowercase().as_str() {
+            known @ ("r" | "g" | "b" | "y") => known.to_uppercase(),
+            _ => band.chars().map(|c| if c.is_ascii_graphic() && c != '.' { c } else { '_' }).collect(),
+        };
+        let taken = name.is_empty() || name == "A" || names.contains(&name);
+        names.push(if taken { format!("{name}_{k}") } else { name });
+    }
+    names
+}
+
 fn any_channel(channel: &Channel) -> ex::AnyChannel<ex::FlatSamples> {
     let samples = match &channel.samples {
         Samples::F32(v) => ex::FlatSamples::F32(v.clone()),
@@ -159,5 +174,11 @@ mod tests {
         assert!(matches!(exr(3, 2, &[], ""), Err(ImageError::Size { .. })));
         let e = exr(4, 2, &channels(), "").expect_err("too few");
         assert!(e.to_string().contains("6 pixels in R"), "{e}");
+    }
+
+    #[test]
+    fn bands_of_any_name_make_channels() {
+        let names = channel_names(&["r", "450.5 nm", "A", "a b", "a\tb"].map(String::from));
+        assert_eq!(names, ["R", "450_5_nm", "A_2", "a_b", "a_b_4"]);
     }
 }

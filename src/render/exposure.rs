@@ -76,13 +76,29 @@ impl Exposure {
         }
     }
 
+    /// The same scale with another white: `stops` of 1 shows everything twice as bright, -1 half as bright.
+    pub fn brighter(self, stops: f64) -> Self {
+        let white = self.white_luminance / stops.exp2();
+        self.with_white(white)
+    }
+
+    /// The same with this luminance, W/m^2 and above 0, shown white.
+    pub fn with_white(self, white_luminance: f64) -> Self {
+        Self { scale: 1.0 / white_luminance, white_luminance, ..self }
+    }
+
     /// Display colour, linear, of one patch's radiosities (one per band); clamped to 0 to 1.
     pub fn display(&self, radiosity: &[f64]) -> LinearRgb {
+        self.linear(radiosity).map(|c| c.clamp(0.0, 1.0))
+    }
+
+    /// The same before clamping: colours that are mixed or interpolated are clamped afterwards.
+    pub fn linear(&self, radiosity: &[f64]) -> LinearRgb {
         let rgb = match (self.colour, radiosity) {
             (DisplayColour::Matrix(m), &[r, g, b]) => m.map(|row| row[0] * r + row[1] * g + row[2] * b),
             _ => [self.weights.iter().zip(radiosity).map(|(w, v)| w * v).sum(); 3],
         };
-        rgb.map(|c| (c * self.scale).clamp(0.0, 1.0))
+        rgb.map(|c| c * self.scale)
     }
 }
 

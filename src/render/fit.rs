@@ -36,6 +36,16 @@ pub fn fit_camera(tracer: &Tracer) -> Camera {
     Camera { size: SIZE, ..camera }
 }
 
+/// A camera with a picture of another size. The vertical field of view stays; a fitted camera opens it where a
+/// narrower picture would cut off what it was fitted to.
+pub fn resized(camera: &Camera, fitted: bool, size: [u32; 2]) -> Camera {
+    let shape = |s: [u32; 2]| f64::from(s[0]) / f64::from(s[1]);
+    let narrower = (shape(camera.size) / shape(size)).max(1.0);
+    let wider = |fov: f64| 2.0 * ((0.5 * fov.to_radians()).tan() * narrower).atan().to_degrees();
+    let fov = if fitted && narrower > 1.0 { wider(camera.fov) } else { camera.fov };
+    Camera { fov, size, ..camera.clone() }
+}
+
 fn candidates(stage: &Stage) -> Vec<Camera> {
     let (low, high) = stage.bounds();
     if !(high - low).is_finite() {

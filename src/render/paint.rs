@@ -1,6 +1,6 @@
 //! Rasters: colours of patches through a visibility pass.
 
-use super::{LinearRgb, Visibility, to_srgb8};
+use super::{LinearRgb, Mesh, Visibility, to_srgb8};
 use crate::raycast::{BACK, ESCAPED};
 use rayon::prelude::*;
 
@@ -23,23 +23,64 @@ const BLANK_GREYS: [f64; 2] = [0.42, 0.30];
 /// Paints each patch in its colour (linear, by patch number); `None` is hatched. Backs are hatched dark, the
 /// background is left transparent, and the samples of a pixel are mixed in linear light.
 pub fn paint(visibility: &Visibility, palette: &[Option<LinearRgb>]) -> Raster {
+    paint_samples(visibility, |_, _, patch| palette.get(patch).copied().flatten())
+}
+
+/// The same with one colour per cell of a mesh: its patches or its elements.
+pub fn paint_cells(visibility: &Visibility, mesh: &Mesh, palette: &[Option<LinearRgb>]) -> Raster {
+    paint_samples(visibility, |pixel, k, patch| {
+        let point = visibility.point(mesh.stage(), pixel, k)?;
+        palette.get(mesh.cell_at(patch, point)).copied().flatten()
+    })
+}
+
+/// Shades smoothly between `colours` at the vertices of a mesh (linear, not yet clamped).
+pub fn paint_smooth(visibility: &Visibility, mesh: &Mesh, colours: &[LinearRgb]) -> Raster {
+    paint_samples(visibility, |pixel, k, patch| {
+        let point = visibility.point(mesh.stage(), pixel, k)?;
+        let cell = mesh.cell_at(patch, point);
+        let mut sum = [0.0; 3];
+        mesh.blend(cell, point, |v, w| (0..3).for_each(|c| sum[c] += w * colours[v][c]));
+        (!mesh.vertices_of(cell).is_empty()).then(|| sum.map(|c| c.clamp(0.0, 1.0)))
+    })
+}
+
+/// Shades smoothly between one value per vertex, each value in its `colour`.
+pub fn paint_field(
+    visibility: &Visibility,
+    mesh: &Mesh,
+    vertices: &[f64],
+    colour: impl Fn(f64) -> LinearRgb + Sync,
+) -> Raster {
+    paint_samples(visibility, |pixel, k, patch| {
+        let point = visibility.point(mesh.stage(), pixel, k)?;
+        let cell = mesh.cell_at(patch, point);
+        (!mesh.vertices_of(cell).is_empty()).then(|| colour(mesh.value_at(cell, point, vertices)))
+    })
+}
+
+/// Paints with the colour of each sample, asked as (pixel, sample, patch).
+fn paint_samples(visibility: &Visibility, colour: impl Fn(usize, usize, usize) -> Option<LinearRgb> + Sync) -> Raster {
     let [width, height] = visibility.size();
-    let pixel = |p: usize| mix(visibility, palette, p, width as usize);
+    let pixel = |p: usize| mix(visibility, &colour, p, width as usize);
     let rgba = (0..visibility.pixel_count()).into_par_iter().flat_map_iter(pixel).collect();
     Raster { width, height, rgba }
 }
 
-fn mix(visibility: &Visibility, palette: &[Option<LinearRgb>], pixel: usize, width: usize) -> [u8; 4] {
+fn mix(
+    visibility: &Visibility,
+    colour: &impl Fn(usize, usize, usize) -> Option<LinearRgb>,
+    pixel: usize,
+    width: usize,
+) -> [u8; 4] {
     let samples = visibility.samples(pixel);
     let (x, y) = (pixel % width, pixel / width);
     let (mut sum, mut covered) = ([0.0; 3], 0u32);
-    for landing in samples.iter().filter(|l| **l != ESCAPED) {
-        let colour = match palette.get(*landing as usize) {
-            Some(Some(rgb)) => *rgb,
-            _ => [hatch(*landing == BACK, x, y); 3],
-        };
+    for (k, landing) in samples.iter().enumerate().filter(|(_, l)| **l != ESCAPED) {
+        let painted = if *landing == BACK { None } else { colour(pixel, k, *landing as usize) };
+        let rgb = painted.unwrap_or([hatch(*landing == BACK, x, y); 3]);
         for c in 0..3 {
-            sum[c] += colour[c];
+            sum[c] += rgb[c];
         }
         covered += 1;
     }

@@ -2,7 +2,7 @@
 
 use super::ReportError;
 use super::artifact::check_shape;
-use crate::io::image::{Channel, Samples, exr};
+use crate::io::image::{Channel, Samples, channel_names, exr};
 use crate::render::Visibility;
 use crate::solution::Radiosity;
 use crate::study::Record;
@@ -40,21 +40,6 @@ pub fn exr_layers(record: &Record, visibility: &Visibility) -> Result<Vec<u8>, R
     channels.push(Channel { name: "patch.number".into(), samples: numbers(visibility, whole.len()) });
     let [width, height] = visibility.size();
     Ok(exr(width, height, &channels, COMMENTS)?)
-}
-
-/// Names that viewers know (R, G, B, Y) where the bands have them, else the bands' own, without the dots that
-/// would make layers of them; made different where two are alike.
-fn channel_names(bands: &[String]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for (k, band) in bands.iter().enumerate() {
-        let name = match band.to_lowercase().as_str() {
-            known @ ("r" | "g" | "b" | "y") => known.to_uppercase(),
-            _ => band.chars().map(|c| if c.is_ascii_graphic() && c != '.' { c } else { '_' }).collect(),
-        };
-        let taken = name.is_empty() || name == "A" || names.contains(&name);
-        names.push(if taken { format!("{name}_{k}") } else { name });
-    }
-    names
 }
 
 fn column(values: &[f64], bands: usize, c: usize) -> Vec<f64> {
@@ -122,11 +107,5 @@ mod tests {
             inside += 1;
         }
         assert!(inside > seen.pixel_count() / 2, "{inside}");
-    }
-
-    #[test]
-    fn bands_of_any_name_make_channels() {
-        let names = channel_names(&["r", "450.5 nm", "A", "a b", "a\tb"].map(String::from));
-        assert_eq!(names, ["R", "450_5_nm", "A_2", "a_b", "a_b_4"]);
     }
 }

@@ -6,6 +6,7 @@ mod form_factors;
 mod inputs;
 mod machine;
 mod reference;
+mod render;
 mod report;
 mod scene;
 mod solve;
@@ -24,6 +25,7 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Solve(args) => solve::run(args, kernel, console),
         Command::Compare(args) => check::compare(args, cli.global.kernel, console),
         Command::Check(args) => check::check(args, cli.global.kernel, console),
+        Command::Render(args) => render::run(args, kernel, console),
         Command::Report { directory } => report::run(directory, kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),
         Command::Setup(command) => machine::setup(command, console),
