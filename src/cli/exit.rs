@@ -101,6 +101,6 @@ impl From<SceneFileError> for Failure {
 
 impl From<WriteError> for Failure {
     fn from(e: WriteError) -> Self {
-        Self::input(e.to_string())
+        Self::input(e.to_string()).at(e.target().display().to_string())
     }
 }

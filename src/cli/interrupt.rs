@@ -40,6 +40,7 @@ fn end(signal: i32, console: &Console) -> u8 {
     crate::io::abandon();
     let act = LAST_ACT.lock().unwrap_or_else(PoisonError::into_inner).take();
     let kept = act.map_or("nothing was written".into(), |act| act());
+    crate::io::end_claims();
     let code = 128 + u8::try_from(signal).unwrap_or(0);
     console.failure(&Failure { code, ..Failure::input(format!("interrupted: {kept}")) });
     code

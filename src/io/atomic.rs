@@ -62,6 +62,20 @@ pub enum WriteError {
     },
 }
 
+impl WriteError {
+    /// The file that was to be written.
+    pub fn target(&self) -> &Path {
+        match self {
+            Self::NoFolder { target, .. }
+            | Self::NotAFolder { target, .. }
+            | Self::IsAFolder { target }
+            | Self::Denied { target, .. }
+            | Self::Full { target, .. }
+            | Self::Failed { target, .. } => target,
+        }
+    }
+}
+
 /// Writes a whole file, or leaves what was there.
 ///
 /// # Errors

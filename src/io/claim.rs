@@ -6,9 +6,11 @@
 
 use super::unfinished::Unfinished;
 use super::{FileError, Files};
+use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 const LOCK: &str = "lock";
 const JOURNAL: &str = "journal";
@@ -16,6 +18,9 @@ const NEW: &str = "new";
 const OLD: &str = "old";
 /// Attempts to lock a file that others remove at the same moment.
 const ATTEMPTS: usize = 20;
+
+/// Working folders of this process.
+static CLAIMED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// The sole right to write a folder; ends when dropped, or with the process.
 #[derive(Debug)]
@@ -62,12 +67,6 @@ impl Claim {
     /// Where a journal of the work may stand.
     pub fn journal(&self) -> PathBuf {
         self.part.join(JOURNAL)
-    }
-
-    /// Leaves the working folder as a dying process should: what it does is what the end of the claim does.
-    pub fn leaver(&self) -> impl Fn() + Send + 'static {
-        let part = self.part.clone();
-        move || leave(&part)
     }
 
     /// Writes the files and puts them where the target is, in one step; then nothing is left beside it.
@@ -123,9 +122,18 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
+        let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
         leave(&self.part);
+        claimed.remove(&self.part);
         self.lock.take();
     }
+}
+
+/// Ends all claims of a program that is about to die, as dropping them would; no other can begin.
+pub fn end_claims() {
+    let claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
+    claimed.iter().for_each(|part| leave(part));
+    std::mem::forget(claimed);
 }
 
 /// Removes the working folder, unless there is a journal in it.
@@ -216,6 +224,15 @@ enum Locked {
 
 /// Locks the working folder, which is made where it is missing.
 fn lock(part: &Path) -> io::Result<Locked> {
+    let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
+    let locked = try_lock(part)?;
+    if !matches!(locked, Locked::ByAnother(_)) {
+        claimed.insert(part.into());
+    }
+    Ok(locked)
+}
+
+fn try_lock(part: &Path) -> io::Result<Locked> {
     let path = part.join(LOCK);
     for _ in 0..ATTEMPTS {
         match fs::create_dir(part) {

@@ -14,7 +14,7 @@ mod solution;
 mod store;
 mod unfinished;
 
-pub use claim::Claim;
+pub use claim::{Claim, end_claims};
 pub use error::FileError;
 pub use folder::write_folder;
 pub use journal::{Found, Journal};

@@ -36,7 +36,7 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     let claim = Claim::take(&args.output, MARKER)?;
     let session = inputs::session(&stage, kernel, console)?;
     let work = open_work(&claim, &session, &options, console)?;
-    let armed = arm(&claim, &work);
+    let armed = arm(&work);
     let (stored, reference) = study::reference_on(&session, &options, console, work.kept())?;
     console.end();
     let seconds = begin.elapsed().as_secs_f64();
@@ -112,12 +112,11 @@ fn open_work(claim: &Claim, session: &Session, options: &Options, console: &Cons
 }
 
 /// An interruption keeps the finished rows and says how many there are.
-fn arm(claim: &Claim, work: &Arc<KeptWork>) -> interrupt::Armed {
-    let (work, leave) = (work.clone(), claim.leaver());
+fn arm(work: &Arc<KeptWork>) -> interrupt::Armed {
+    let work = work.clone();
     interrupt::before_dying(move || {
         let rows = work.flush();
         let there = work.is_there();
-        leave();
         let lost = work.trouble().map_or(String::new(), |t| format!(" ({t})"));
         match (rows, there) {
             (0, _) => format!("no row was finished yet{lost}; the same command begins again"),
