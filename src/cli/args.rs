@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Ray-traced reference validator and error metrics for radiosity and view factors.
 ///
 /// Exit codes: 0 done, every limit met; 1 a limit is exceeded; 2 bad usage or input; 3 inconclusive;
-/// 4 the reference failed its own self-check; 70 a bug.
+/// 4 the reference failed its own self-check; 70 a bug; 130 interrupted (143 by SIGTERM).
 #[derive(Debug, Parser)]
 #[command(name = "etalon", version, propagate_version = true, arg_required_else_help = true)]
 pub struct Cli {
@@ -199,9 +199,13 @@ pub struct ReferenceArgs {
     /// Rays.
     #[command(flatten)]
     pub rays: RayArgs,
-    /// Directory of the reference.
+    /// Directory of the reference. While it is computed, DIR.part stands beside it: after an interruption the
+    /// same command goes on from there.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
+    /// Compute it even if DIR already holds a reference that would do.
+    #[arg(long)]
+    pub force: bool,
     /// Which truth.
     #[arg(long, value_enum, default_value_t = Truth::PatchSystem)]
     pub truth: Truth,

@@ -25,6 +25,10 @@ pub const INCONCLUSIVE: u8 = 3;
 pub const SELF_CHECK: u8 = 4;
 /// A bug.
 pub const BUG: u8 = 70;
+/// Interrupted by Ctrl-C (128 + SIGINT).
+pub const INTERRUPTED: u8 = 130;
+/// Ended by SIGTERM (128 + SIGTERM).
+pub const TERMINATED: u8 = 143;
 
 /// Why a command ends early: exit code, one message, the place.
 #[derive(Debug)]
@@ -56,6 +60,7 @@ impl Failure {
         match self.code {
             SELF_CHECK => "self-check",
             BUG => "bug",
+            INTERRUPTED | TERMINATED => "interrupted",
             _ => "bad-input",
         }
     }
@@ -96,6 +101,6 @@ impl From<SceneFileError> for Failure {
 
 impl From<WriteError> for Failure {
     fn from(e: WriteError) -> Self {
-        Self::input(e.to_string())
+        Self::input(e.to_string()).at(e.target().display().to_string())
     }
 }

@@ -5,6 +5,7 @@ mod commands;
 mod console;
 pub mod doctor;
 mod exit;
+mod interrupt;
 pub mod setup;
 mod values;
 
@@ -14,6 +15,7 @@ use clap::error::ErrorKind;
 use console::Console;
 use exit::Failure;
 use std::ffi::OsString;
+use std::sync::Arc;
 
 /// Runs the program on these arguments (the first is its own name); returns the exit code.
 pub fn run(arguments: Vec<OsString>) -> u8 {
@@ -43,12 +45,15 @@ fn usage_message(e: &clap::Error) -> String {
 }
 
 fn execute(cli: Cli) -> u8 {
-    let console = Console::new(&cli.global);
+    let console = Arc::new(Console::new(&cli.global));
+    interrupt::watch(console.clone());
     if let Some(n) = cli.global.threads {
         // Fails only where a pool exists already: in tests that run several commands in one process.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global();
     }
-    match commands::run(&cli, &console) {
+    let result = commands::run(&cli, &console);
+    interrupt::give_way();
+    match result {
         Ok(code) => code,
         Err(failure) => {
             console.failure(&failure);

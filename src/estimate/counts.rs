@@ -1,5 +1,6 @@
 //! Hit counts per (row, patch hit, randomisation): integers, hence the same on any number of threads.
 
+use super::FinishedRow;
 use crate::raycast::Tally;
 use crate::solution::FormFactors;
 
@@ -67,10 +68,12 @@ impl HitCounts {
         Self { patches, randomisations, rays: 0, rows, active, tally: Tally::default() }
     }
 
-    /// Adds the hits of one row from a later block of rays.
-    pub(super) fn merge_row(&mut self, row: usize, more: Vec<Entry>) {
-        let old = std::mem::take(&mut self.rows[row]);
-        self.rows[row] = if old.is_empty() { more } else { merge(&old, &more) };
+    /// Adds what a later block of rays found for one row.
+    pub(super) fn add(&mut self, more: FinishedRow) {
+        let row = &mut self.rows[more.row];
+        let old = std::mem::take(row);
+        *row = if old.is_empty() { more.entries } else { merge(&old, &more.entries) };
+        self.tally += more.tally;
     }
 
     /// Rays of a row over all randomisations.
@@ -180,7 +183,8 @@ mod tests {
         // Counts 1, 0, 2, 1 of 4 rays each: mean 1 / 4, sample variance of counts 2/3, se = sqrt(2/3/4) / 4.
         let mut c = HitCounts::empty(2, 4, vec![true]);
         c.rays = 4;
-        c.merge_row(0, vec![Entry::new(1, 0, 1), Entry::new(1, 2, 2), Entry::new(1, 3, 1)]);
+        let entries = vec![Entry::new(1, 0, 1), Entry::new(1, 2, 2), Entry::new(1, 3, 1)];
+        c.add(FinishedRow { row: 0, entries, tally: Tally::default() });
         let f = c.form_factors();
         assert_eq!(f.get(0, 1), 0.25);
         assert!((f.std_err_of(0, 1).unwrap() - (2.0f64 / 12.0).sqrt() / 4.0).abs() < 1e-15);

@@ -1,6 +1,6 @@
 //! Casting the rays of all rows: net by net, row by row, in parallel.
 
-use super::{Emitter, Entry, HitCounts, Plan, Reached};
+use super::{Block, Checkpoint, Emitter, Entry, FinishedRow, HitCounts, NoCheckpoint, Plan, Reached};
 use crate::math::{DVec3, Frame};
 use crate::raycast::{BACK, RayBatch, Tally, TraceScratch, Tracer};
 use crate::sampling::{Net, PointMap, Stream, fold};
@@ -37,15 +37,27 @@ pub fn cast(
     error: &dyn Fn(&HitCounts) -> f64,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Casting {
+    cast_on(tracer, emitters, stream, plan, error, progress, &NoCheckpoint)
+}
+
+/// The same, going on from the rows that an earlier run has kept: the counts do not depend on how many those are.
+pub fn cast_on(
+    tracer: &Tracer,
+    emitters: &[Option<Emitter>],
+    stream: Stream,
+    plan: &Plan,
+    error: &dyn Fn(&HitCounts) -> f64,
+    progress: &(dyn Fn(u64) + Sync),
+    kept: &dyn Checkpoint,
+) -> Casting {
     let begin = Instant::now();
     let active = emitters.iter().map(Option::is_some).collect();
     let mut counts = HitCounts::empty(tracer.stage().patch_count(), plan.randomisations, active);
     let mut waves = Vec::new();
     for rays in plan.waves() {
         while counts.rays < rays {
-            let most = (NET / u64::from(plan.randomisations)).clamp(1, MOST_PER_RANDOMISATION);
-            let block = (rays - counts.rays).min(most);
-            cast_block(tracer, emitters, stream, &mut counts, block, progress);
+            let block = (rays - counts.rays).min(most_per_block(plan));
+            cast_block(tracer, emitters, stream, &mut counts, block, progress, kept);
         }
         let relative = error(&counts);
         waves.push((counts.rays * u64::from(plan.randomisations), relative));
@@ -61,33 +73,56 @@ pub fn cast(
     Casting { counts, reached: Reached { rays_per_patch, relative_error, missed_target }, waves }
 }
 
-/// Casts the next `block` samples of every randomisation.
+/// Samples of one randomisation that one net holds.
+fn most_per_block(plan: &Plan) -> u64 {
+    (NET / u64::from(plan.randomisations)).clamp(1, MOST_PER_RANDOMISATION)
+}
+
+impl Plan {
+    /// Blocks of samples in which a run without early stop is cast.
+    pub fn blocks(&self) -> u64 {
+        let mut start = 0;
+        let count = |rays: u64| (rays - std::mem::replace(&mut start, rays)).div_ceil(most_per_block(self));
+        self.waves().into_iter().map(count).sum()
+    }
+}
+
+/// Casts the next `rays` samples of every randomisation, for the rows that are not kept already.
 fn cast_block(
     tracer: &Tracer,
     emitters: &[Option<Emitter>],
     stream: Stream,
     counts: &mut HitCounts,
-    block: u64,
+    rays: u64,
     progress: &(dyn Fn(u64) + Sync),
+    kept: &dyn Checkpoint,
 ) {
-    let net = Net::new(stream.child(0), counts.randomisations, counts.rays, block);
-    let shifts = stream.child(1);
-    let workers = Workers { idle: Mutex::default(), patches: counts.patches, randomisations: counts.randomisations };
-    let rows: Vec<(usize, Vec<Entry>, Tally)> = emitters
-        .par_iter()
-        .enumerate()
-        .filter_map(|(i, e)| e.as_ref().map(|e| (i, e)))
-        .map(|(i, emitter)| {
-            let (row, tally) = workers.lend(|w| w.row(tracer, &net, emitter, shifts.child(emitter.key)));
+    let (patches, randomisations) = (counts.patches, counts.randomisations);
+    let block = Block { start: counts.rays, rays, patches, randomisations };
+    let mut due: Vec<Option<&Emitter>> = emitters.iter().map(Option::as_ref).collect();
+    kept.restore(block, &mut |row| {
+        // Each row once, whatever the checkpoint brings.
+        if due.get_mut(row.row).and_then(Option::take).is_some() {
+            progress(row.tally.rays);
+            counts.add(row);
+        }
+    });
+    if due.iter().any(Option::is_some) {
+        let net = Net::new(stream.child(0), randomisations, block.start, rays);
+        let shifts = stream.child(1);
+        let workers = Workers { idle: Mutex::default(), patches, randomisations };
+        let cast_row = |(row, emitter): (usize, &Emitter)| {
+            let (entries, tally) = workers.lend(|w| w.row(tracer, &net, emitter, shifts.child(emitter.key)));
+            let row = FinishedRow { row, entries, tally };
+            kept.keep(block, &row);
             progress(net.len() as u64);
-            (i, row, tally)
-        })
-        .collect();
-    for (i, row, tally) in rows {
-        counts.merge_row(i, row);
-        counts.tally += tally;
+            row
+        };
+        let rows: Vec<FinishedRow> =
+            due.par_iter().enumerate().filter_map(|(i, e)| e.map(|e| (i, e))).map(cast_row).collect();
+        rows.into_iter().for_each(|row| counts.add(row));
     }
-    counts.rays += block;
+    counts.rays += rays;
 }
 
 /// About `rays` of the rays that [`cast`] begins with, spread over all emitters: for a second look at them.

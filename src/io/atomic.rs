@@ -1,8 +1,15 @@
 //! Files that are whole or not there: written beside their target, then renamed.
 
-use std::fs::{self, File};
+use super::claim::is_at;
+use super::unfinished::Unfinished;
+use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Names of temporary files begin and end like this.
+const PREFIX: &str = ".etalon-";
+const SUFFIX: &str = ".part";
 
 /// Why a file could not be written. The target is as it was before.
 #[derive(Debug, thiserror::Error)]
@@ -37,14 +44,36 @@ pub enum WriteError {
         /// Folder it was to stand in.
         folder: PathBuf,
     },
-    /// The medium failed, or is full.
-    #[error("cannot write {target}: {source}; nothing was left behind")]
+    /// There is no room.
+    #[error("cannot write {target}: {source}; make room there, or choose another place; nothing was left behind")]
+    Full {
+        /// File that was to be written.
+        target: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The medium failed.
+    #[error("cannot write {target}: {source}; choose another place; nothing was left behind")]
     Failed {
         /// File that was to be written.
         target: PathBuf,
         /// What the system says.
         source: io::Error,
     },
+}
+
+impl WriteError {
+    /// The file that was to be written.
+    pub fn target(&self) -> &Path {
+        match self {
+            Self::NoFolder { target, .. }
+            | Self::NotAFolder { target, .. }
+            | Self::IsAFolder { target }
+            | Self::Denied { target, .. }
+            | Self::Full { target, .. }
+            | Self::Failed { target, .. } => target,
+        }
+    }
 }
 
 /// Writes a whole file, or leaves what was there.
@@ -98,16 +127,77 @@ fn beside(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".etalon-").suffix(".part");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     if let Some(p) = permissions.or_else(ordinary_permissions) {
         builder.permissions(p);
     }
     // The temporary file removes itself on every way out but the last.
-    let mut out = BufWriter::new(builder.tempfile_in(folder_of(target))?);
+    let (unfinished, file) = Unfinished::create(|| held(&builder, folder_of(target)))?;
+    let mut out = BufWriter::new(file);
     fill(&mut out)?;
     let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
     file.as_file().sync_all()?;
-    file.persist(target).map(drop).map_err(|e| e.error)
+    unfinished.finish(|| file.persist(target).map(drop).map_err(|e| e.error))
+}
+
+/// A temporary file that is locked for as long as it is written: what is not locked is left over.
+fn held(builder: &tempfile::Builder, folder: &Path) -> io::Result<(PathBuf, NamedTempFile)> {
+    loop {
+        let file = builder.tempfile_in(folder)?;
+        match file.as_file().try_lock() {
+            // Somebody may have taken it for a leftover before it was locked.
+            Ok(()) if !is_at(file.as_file(), file.path()) => {}
+            Err(TryLockError::WouldBlock) => {}
+            Ok(()) | Err(TryLockError::Error(_)) => return Ok((file.path().to_path_buf(), file)),
+        }
+    }
+}
+
+/// Fails where [`write()`] would fail for want of a folder, of permission or of a file that can be replaced; leaves
+/// everything as it is, but for temporary files that dead processes have left beside the target.
+///
+/// # Errors
+/// As [`write()`].
+pub fn check(target: &Path) -> Result<(), WriteError> {
+    let real = fs::canonicalize(target).unwrap_or_else(|_| target.to_path_buf());
+    let checked = match fs::metadata(&real) {
+        Ok(m) if m.is_dir() => return Err(WriteError::IsAFolder { target: target.into() }),
+        // A pipe must not be opened twice: whoever reads it would take the first end for the end.
+        Ok(m) if !m.is_file() => Ok(()),
+        _ => probe(folder_of(&real)),
+    };
+    checked.map_err(|e| explain(target, &real, e))
+}
+
+/// Fails where a folder could not be made and filled. Makes nothing.
+///
+/// # Errors
+/// As [`create_folder`].
+pub fn check_folder(folder: &Path) -> Result<(), WriteError> {
+    let there = folder.ancestors().find(|p| p.exists() || p.as_os_str().is_empty()).unwrap_or(folder);
+    let there = if there.as_os_str().is_empty() { Path::new(".") } else { there };
+    if !there.is_dir() {
+        return Err(WriteError::NotAFolder { target: folder.into(), folder: there.into() });
+    }
+    probe(there).map_err(|e| explain(&folder.join("any file"), &there.join("any file"), e))
+}
+
+/// Makes a temporary file and takes it away again.
+fn probe(folder: &Path) -> io::Result<()> {
+    sweep(folder);
+    Unfinished::create(|| held(tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX), folder)).map(drop)
+}
+
+/// Removes temporary files that nobody holds any more.
+fn sweep(folder: &Path) {
+    let is_ours = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|e| e.file_name().to_str().is_some_and(is_ours)) {
+        let path = entry.path();
+        if File::open(&path).is_ok_and(|f| f.try_lock().is_ok()) {
+            let _ = fs::remove_file(path);
+        }
+    }
 }
 
 /// What a file gets that is simply created; the process's mask still applies.
@@ -138,6 +228,9 @@ fn explain(target: &Path, real: &Path, source: io::Error) -> WriteError {
     match source.kind() {
         io::ErrorKind::NotFound if !folder.exists() => WriteError::NoFolder { target, folder },
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => WriteError::Denied { target, folder },
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+            WriteError::Full { target, source }
+        }
         _ => WriteError::Failed { target, source },
     }
 }

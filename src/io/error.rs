@@ -36,7 +36,13 @@ impl FileError {
 
     /// A failed system call on the file.
     pub fn system(path: &Path, doing: &str, error: &std::io::Error) -> Self {
-        Self::new(path, format!("cannot be {doing}: {error}"))
+        let mend = match error.kind() {
+            std::io::ErrorKind::NotFound => "is the name right? there is no such file",
+            std::io::ErrorKind::IsADirectory => "name a file, not a folder",
+            std::io::ErrorKind::PermissionDenied => "allow it to be read, or copy it where it can be",
+            _ => "",
+        };
+        Self::new(path, format!("cannot be {doing}: {error}")).mend(mend)
     }
 
     /// File and place, for the `place` field of a JSON error.

@@ -1,5 +1,6 @@
 //! Form-factor matrices as `.npz` (SciPy CSR), `.csv` and Matrix Market `.mtx`.
 
+use super::solution::csv_error;
 use super::{FileError, npz};
 use crate::solution::FormFactors;
 use std::fmt::Write;
@@ -105,6 +106,14 @@ pub fn read_form_factors(path: &Path, n: usize) -> Result<FormFactors, FileError
     reader.build(entries, has_errors)
 }
 
+/// What to do about arrays that are no sparse matrix.
+const SAVE: &str = "save it with scipy.sparse.save_npz";
+
+/// True for 0, 1, 2, ...
+fn is_index(x: f64) -> bool {
+    x >= 0.0 && x.fract() == 0.0
+}
+
 /// Row, column, form factor, standard error.
 type Triplet = (usize, usize, f64, f64);
 
@@ -132,6 +141,9 @@ impl Reader<'_> {
             if !f.is_finite() || f < 0.0 {
                 return Err(self.wrong(format!("form factor {f} is not a number >= 0")).at(entry));
             }
+            if se < 0.0 {
+                return Err(self.wrong(format!("standard error {se} is below 0")).at(entry));
+            }
             if f != 0.0 {
                 rows[i].push((j as u32, f, se));
             }
@@ -139,7 +151,10 @@ impl Reader<'_> {
         for (i, row) in rows.iter_mut().enumerate() {
             row.sort_unstable_by_key(|e| e.0);
             if let Some(w) = row.windows(2).find(|w| w[0].0 == w[1].0) {
-                return Err(self.wrong("stands twice").at(format!("entry ({i}, {})", w[0].0)));
+                return Err(self
+                    .wrong("stands twice")
+                    .at(format!("entry ({i}, {})", w[0].0))
+                    .mend("give each pair once: add the parts up, or drop one"));
             }
         }
         let mut f = FormFactors::from_rows(rows);
@@ -150,7 +165,8 @@ impl Reader<'_> {
     }
 
     fn check_shape(&self, rows: f64, columns: f64) -> Result<(), FileError> {
-        if rows as usize == self.n && columns as usize == self.n {
+        let n = self.n as f64;
+        if rows == n && columns == n {
             return Ok(());
         }
         Err(self
@@ -162,12 +178,14 @@ impl Reader<'_> {
         let members = npz::unzip(self.path, bytes)?;
         let member = |name: &str| {
             members.get(name).ok_or_else(|| {
-                self.wrong(format!("has no array \"{name}\"")).mend("save it with scipy.sparse.save_npz")
+                self.wrong(format!("has no array \"{name}\"")).mend(SAVE)
             })
         };
         let numbers = |name: &str| Ok(npz::numbers(self.path, name, member(name)?)?.1);
         let shape = numbers("shape")?;
-        let [rows, columns] = shape[..] else { return Err(self.wrong("\"shape\" does not hold two numbers")) };
+        let [rows, columns] = shape[..] else {
+            return Err(self.wrong("does not hold two numbers").at("array \"shape\"").mend(SAVE));
+        };
         self.check_shape(rows, columns)?;
         let data = numbers("data")?;
         let format = npz::text(member("format")?);
@@ -175,11 +193,15 @@ impl Reader<'_> {
             "coo" => numbers("row")?.into_iter().zip(numbers("col")?).collect(),
             "csr" | "csc" => {
                 let (starts, indices) = (numbers("indptr")?, numbers("indices")?);
-                if starts.len() != self.n + 1 || starts.windows(2).any(|w| w[1] < w[0]) || starts[0] != 0.0 {
-                    return Err(self.wrong("\"indptr\" is not a rising list of N + 1 numbers from 0"));
+                let whole = starts.iter().all(|s| s.fract() == 0.0);
+                if !whole || starts.len() != self.n + 1 || starts.windows(2).any(|w| w[1] < w[0]) || starts[0] != 0.0
+                {
+                    let problem = format!("is not a rising list of {} whole numbers from 0", self.n + 1);
+                    return Err(self.wrong(problem).at("array \"indptr\"").mend(SAVE));
                 }
                 if starts[self.n] as usize != indices.len() {
-                    return Err(self.wrong("\"indptr\" and \"indices\" do not belong together"));
+                    let problem = format!("ends with {}, but there are {} indices", starts[self.n], indices.len());
+                    return Err(self.wrong(problem).at("array \"indptr\"").mend(SAVE));
                 }
                 let major =
                     (0..self.n).flat_map(|i| std::iter::repeat_n(i as f64, (starts[i + 1] - starts[i]) as usize));
@@ -191,25 +213,29 @@ impl Reader<'_> {
             }
         };
         if pairs.len() != data.len() {
-            return Err(self.wrong("\"data\" and the indices have different lengths"));
+            let problem = format!("holds {} values for {} indices", data.len(), pairs.len());
+            return Err(self.wrong(problem).at("array \"data\"").mend(SAVE));
         }
-        if pairs.iter().any(|(i, j)| *i < 0.0 || *j < 0.0) {
-            return Err(self.wrong("has a negative index"));
+        if let Some((i, j)) = pairs.iter().find(|(i, j)| !(is_index(*i) && is_index(*j))) {
+            return Err(self.wrong("is not at a row and a column").at(format!("entry ({i}, {j})")).mend(SAVE));
         }
         Ok(pairs.into_iter().zip(data).map(|((i, j), f)| (i as usize, j as usize, f, f64::NAN)).collect())
     }
 
     fn csv(&self, bytes: &[u8]) -> Result<(Vec<Triplet>, bool), FileError> {
         let mut csv = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
-        let header = csv.headers().map_err(|e| self.wrong(e.to_string()))?.clone();
+        let header = csv.headers().map_err(|e| csv_error(self.path, &e))?.clone();
         let names: Vec<&str> = header.iter().collect();
         if !names.starts_with(&["i", "j", "form_factor"]) {
-            return Err(self.wrong("does not begin with i,j,form_factor").at("line 1"));
+            return Err(self
+                .wrong("does not begin with i,j,form_factor")
+                .at("line 1")
+                .mend("the first line names the columns: i,j,form_factor,std_err"));
         }
         let mut all_have_errors = names.get(3) == Some(&"std_err");
         let mut out = Vec::new();
         for record in csv.records() {
-            let record = record.map_err(|e| self.wrong(e.to_string()))?;
+            let record = record.map_err(|e| csv_error(self.path, &e))?;
             let line = format!("line {}", record.position().map_or(0, csv::Position::line));
             let field = |k: usize| record.get(k).unwrap_or("");
             let index = |k: usize| {
@@ -220,7 +246,11 @@ impl Reader<'_> {
             let value: f64 = field(2)
                 .parse()
                 .map_err(|_| self.wrong(format!("\"{}\" is not a number", field(2))).at(line.clone()))?;
-            let std_err = field(3).parse().unwrap_or(f64::NAN);
+            let std_err = match field(3) {
+                "" => f64::NAN,
+                _ if names.get(3) != Some(&"std_err") => f64::NAN,
+                text => text.parse().map_err(|_| self.wrong(format!("\"{text}\" is not a number")).at(line.clone()))?,
+            };
             all_have_errors &= f64::is_finite(std_err);
             out.push((index(0)?, index(1)?, value, std_err));
         }
@@ -228,25 +258,34 @@ impl Reader<'_> {
     }
 
     fn mtx(&self, bytes: &[u8]) -> Result<Vec<Triplet>, FileError> {
-        let text = std::str::from_utf8(bytes).map_err(|_| self.wrong("is not text"))?;
+        let text = std::str::from_utf8(bytes).map_err(|e| {
+            let line = bytes[..e.valid_up_to()].iter().filter(|b| **b == b'\n').count() + 1;
+            self.wrong("is not text").at(format!("line {line}")).mend("save it as plain text")
+        })?;
         let first = text.lines().next().unwrap_or("").to_lowercase();
         let symmetric = first.ends_with("symmetric");
         if !first.starts_with("%%matrixmarket matrix coordinate") || !(symmetric || first.ends_with("general")) {
-            return Err(self.wrong("is not a Matrix Market coordinate matrix").at("line 1"));
+            return Err(self
+                .wrong("is not a Matrix Market coordinate matrix")
+                .at("line 1")
+                .mend("it begins with %%MatrixMarket matrix coordinate real general"));
         }
         let mut lines = text.lines().enumerate().filter(|(_, l)| !l.starts_with('%') && !l.trim().is_empty());
         let parse = |(number, line): (usize, &str)| -> Result<[f64; 3], FileError> {
-            let fields: Vec<f64> = line.split_whitespace().filter_map(|w| w.parse().ok()).collect();
-            <[f64; 3]>::try_from(fields)
-                .map_err(|_| self.wrong("does not hold three numbers").at(format!("line {}", number + 1)))
+            let fields: Option<Vec<f64>> = line.split_whitespace().map(|w| w.parse().ok()).collect();
+            fields
+                .and_then(|f| <[f64; 3]>::try_from(f).ok())
+                .ok_or_else(|| self.wrong("does not hold three numbers").at(format!("line {}", number + 1)))
         };
-        let [rows, columns, stored] = parse(lines.next().ok_or_else(|| self.wrong("has no size line"))?)?;
+        let [rows, columns, stored] = parse(lines.next().ok_or_else(|| self.wrong("has no size line").at("line 2"))?)?;
         self.check_shape(rows, columns)?;
         let mut out = Vec::new();
         for (number, line) in lines {
             let [i, j, f] = parse((number, line))?;
-            if i < 1.0 || j < 1.0 {
-                return Err(self.wrong("numbers count from 1 in .mtx").at(format!("line {}", number + 1)));
+            if !(is_index(i - 1.0) && is_index(j - 1.0)) {
+                return Err(self
+                    .wrong(format!("({i}, {j}) is no row and column: numbers count from 1 in .mtx"))
+                    .at(format!("line {}", number + 1)));
             }
             out.push((i as usize - 1, j as usize - 1, f, f64::NAN));
             if symmetric && i != j {
@@ -254,7 +293,7 @@ impl Reader<'_> {
             }
         }
         let read = out.iter().filter(|(i, j, ..)| !symmetric || i >= j).count();
-        if read != stored as usize {
+        if read as f64 != stored {
             return Err(self.wrong(format!("announces {stored} entries but holds {read}")).mend("is it cut off?"));
         }
         Ok(out)

@@ -1,19 +1,25 @@
 //! File formats: scenes, matrices, solutions, references, images; files that are whole or not there.
 
 pub mod atomic;
+mod claim;
 mod error;
 mod folder;
 pub mod image;
+mod journal;
 mod matrix;
 mod npz;
 mod patches;
 pub mod scene;
 mod solution;
 mod store;
+mod unfinished;
 
+pub use claim::{Claim, end_claims};
 pub use error::FileError;
 pub use folder::write_folder;
+pub use journal::{Found, Journal};
 pub use matrix::{MatrixFormat, read_form_factors, write_form_factors};
 pub use patches::{PatchFormat, write_patches};
 pub use solution::{BandNames, SolutionFile, SolutionFormat, read_solution, write_solution};
 pub use store::{Files, StoredReference, is_reference};
+pub use unfinished::abandon;

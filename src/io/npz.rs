@@ -54,7 +54,10 @@ pub(super) fn byte_string(text: &str) -> Vec<u8> {
 
 /// Members of an `.npz` by name, undone.
 pub(super) fn unzip(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Vec<u8>>, FileError> {
-    let broken = |e: &dyn std::fmt::Display| FileError::new(path, format!("is not a readable .npz: {e}"));
+    let broken = |e: &dyn std::fmt::Display| {
+        FileError::new(path, format!("is not a readable .npz: {e}"))
+            .mend("is it cut off, or another kind of file? save it again with numpy.savez or scipy.sparse.save_npz")
+    };
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| broken(&e))?;
     let mut members = BTreeMap::new();
     for k in 0..zip.len() {
@@ -70,13 +73,20 @@ pub(super) fn unzip(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Vec<u8
 /// Shape and values of a real or integer array, as f64. Integers beyond 2^53 do not occur in our files.
 pub(super) fn numbers(path: &Path, name: &str, npy: &[u8]) -> Result<(Vec<u64>, Vec<f64>), FileError> {
     let broken = |e: &dyn std::fmt::Display| {
-        FileError::new(path, format!("cannot be read: {e}")).at(format!("array \"{name}\""))
+        FileError::new(path, format!("cannot be read: {e}"))
+            .at(format!("array \"{name}\""))
+            .mend("is it cut off? save it again as a plain array of float64")
     };
     let open = || npyz::NpyFile::new(npy).map_err(|e| broken(&e));
     let header = open()?;
     let shape = header.shape().to_vec();
     if header.order() == npyz::Order::Fortran && shape.len() > 1 {
         return Err(broken(&"it is stored in Fortran order").mend("save numpy.ascontiguousarray(...)"));
+    }
+    // A damaged shape must not ask for memory.
+    let least = shape.iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX);
+    if least > npy.len() as u64 {
+        return Err(broken(&format!("shape {shape:?} needs more bytes than there are")).mend("is it cut off?"));
     }
     let dtype = header.dtype().descr();
     let kind = dtype.trim_matches('\'').trim_start_matches(['<', '|', '=']).to_string();

@@ -156,24 +156,32 @@ pub fn read_solution(path: &Path) -> Result<SolutionFile, FileError> {
 
 fn read_csv(path: &Path, bytes: &[u8]) -> Result<SolutionFile, FileError> {
     let mut csv = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
-    let header = csv.headers().map_err(|e| FileError::new(path, e.to_string()))?.clone();
+    let header = csv.headers().map_err(|e| csv_error(path, &e))?.clone();
     let names: Vec<&str> = header.iter().collect();
     if names.first() != Some(&"patch") || names.len() < 2 {
-        return Err(FileError::new(path, "does not begin with patch,<band>,...").at("line 1"));
+        return Err(FileError::new(path, "does not begin with patch,<band>,...")
+            .at("line 1")
+            .mend("the first line names the columns: patch,r,g,b for example"));
+    }
+    if let Some(twice) = (1..names.len()).find(|k| names[..*k].contains(&names[*k])) {
+        return Err(FileError::new(path, format!("names the column \"{}\" twice", names[twice]))
+            .at("line 1")
+            .mend("one column per band"));
     }
     let bands: Vec<String> = names[1..].iter().filter(|n| !n.ends_with("_std_err")).map(|n| n.to_string()).collect();
     let column = |name: &str| names.iter().position(|n| *n == name);
     let value_columns: Vec<usize> = bands.iter().filter_map(|b| column(b)).collect();
     let error_columns: Vec<usize> = bands.iter().filter_map(|b| column(&format!("{b}_std_err"))).collect();
     if names.len() != 1 + value_columns.len() + error_columns.len()
-        || value_columns.windows(2).any(|w| w[0] == w[1])
         || !(error_columns.is_empty() || error_columns.len() == bands.len())
     {
-        return Err(FileError::new(path, "has columns that are neither bands nor all of their _std_err").at("line 1"));
+        return Err(FileError::new(path, "has columns that are neither bands nor all of their _std_err")
+            .at("line 1")
+            .mend("give every band its <band>_std_err column, or none"));
     }
     let mut rows = BTreeMap::new();
     for record in csv.records() {
-        let record = record.map_err(|e| FileError::new(path, e.to_string()))?;
+        let record = record.map_err(|e| csv_error(path, &e))?;
         let line = format!("line {}", record.position().map_or(0, csv::Position::line));
         let wrong = |problem: String| FileError::new(path, problem).at(line.clone());
         if record.len() != names.len() {
@@ -196,9 +204,21 @@ fn read_csv(path: &Path, bytes: &[u8]) -> Result<SolutionFile, FileError> {
     file.check_finite()
 }
 
+/// A line that is no CSV, by number.
+pub(super) fn csv_error(path: &Path, e: &csv::Error) -> FileError {
+    let line = e.position().map_or("line 1".into(), |p| format!("line {}", p.line()));
+    let problem = match e.kind() {
+        csv::ErrorKind::Utf8 { .. } => "is not text in UTF-8".into(),
+        _ => e.to_string(),
+    };
+    FileError::new(path, problem).at(line).mend("save it as plain comma-separated text")
+}
+
 fn read_json(path: &Path, bytes: &[u8]) -> Result<SolutionFile, FileError> {
     let json: Json = serde_json::from_slice(bytes).map_err(|e| {
-        FileError::new(path, format!("is not an {JSON_FORMAT} file: {e}")).at(format!("line {}", e.line()))
+        FileError::new(path, format!("is not an {JSON_FORMAT} file: {e}"))
+            .at(format!("line {}", e.line()))
+            .mend("it holds \"format\", \"bands\" and \"radiosity\", a list of numbers for each patch")
     })?;
     if json.format != JSON_FORMAT {
         return Err(FileError::new(path, format!("has format \"{}\"", json.format))
@@ -207,11 +227,19 @@ fn read_json(path: &Path, bytes: &[u8]) -> Result<SolutionFile, FileError> {
     let width = json.bands.len();
     let errors = json.std_err.unwrap_or_default();
     let lengths_fit = errors.is_empty() || errors.len() == json.radiosity.len();
-    if let Some(i) = json.radiosity.iter().chain(&errors).position(|r| r.len() != width) {
-        return Err(FileError::new(path, format!("does not have {width} values")).at(format!("row {i}")));
+    if width == 0 {
+        return Err(FileError::new(path, "names no band").at("\"bands\"").mend("\"bands\": [\"r\", \"g\", \"b\"]"));
     }
-    if width == 0 || !lengths_fit {
-        return Err(FileError::new(path, "\"bands\", \"radiosity\" and \"std_err\" do not belong together"));
+    for (what, rows) in [("radiosity", &json.radiosity), ("std_err", &errors)] {
+        if let Some(i) = rows.iter().position(|r| r.len() != width) {
+            return Err(FileError::new(path, format!("has {} values for {width} bands", rows[i].len()))
+                .at(format!("\"{what}\", patch {i}"))
+                .mend("one value per band"));
+        }
+    }
+    if !lengths_fit {
+        let (n, m) = (json.radiosity.len(), errors.len());
+        return Err(FileError::new(path, format!("has {m} rows, but \"radiosity\" has {n}")).at("\"std_err\""));
     }
     let mut errors = errors.into_iter();
     let rows = json.radiosity.into_iter().enumerate().map(|(i, values)| (i, Row { values, std_err: errors.next() }));
@@ -233,10 +261,13 @@ fn read_array(path: &Path, values: &[u8], errors: Option<&[u8]>) -> Result<Solut
         [_, bands] if bands > 0 => bands as usize,
         _ => return Err(FileError::new(path, format!("has shape {shape:?}, not N x bands")).at("array \"radiosity\"")),
     };
-    let errors = errors.map(|e| npz::numbers(path, "std_err", e)).transpose()?.map(|(_, e)| e);
-    if errors.as_ref().is_some_and(|e| e.len() != values.len()) {
-        return Err(FileError::new(path, "\"radiosity\" and \"std_err\" have different shapes"));
+    let errors = errors.map(|e| npz::numbers(path, "std_err", e)).transpose()?;
+    if let Some((other, _)) = errors.as_ref().filter(|(s, _)| *s != shape) {
+        return Err(FileError::new(path, format!("has shape {other:?}, but \"radiosity\" {shape:?}"))
+            .at("array \"std_err\"")
+            .mend("one standard error for each value"));
     }
+    let errors = errors.map(|(_, e)| e);
     let row = |(i, v): (usize, &[f64])| {
         let std_err = errors.as_ref().map(|e| e[i * width..(i + 1) * width].to_vec());
         (i, Row { values: v.to_vec(), std_err })
@@ -252,8 +283,12 @@ impl SolutionFile {
 
     fn check_finite(self) -> Result<Self, FileError> {
         for (i, row) in &self.rows {
-            if let Some(x) = row.values.iter().chain(row.std_err.iter().flatten()).find(|x| !x.is_finite()) {
+            let errors = || row.std_err.iter().flatten();
+            if let Some(x) = row.values.iter().chain(errors()).find(|x| !x.is_finite()) {
                 return Err(self.wrong(format!("{x} is not a finite number")).at(format!("patch {i}")));
+            }
+            if let Some(x) = errors().find(|x| **x < 0.0) {
+                return Err(self.wrong(format!("{x} is not a standard error: it is below 0")).at(format!("patch {i}")));
             }
         }
         Ok(self)
@@ -274,6 +309,23 @@ impl SolutionFile {
         self.width
     }
 
+    /// Refuses a file without any patch, or that leaves one out: where no scene says which patches there are, the
+    /// file alone does.
+    ///
+    /// # Errors
+    /// Names the first patch that is missing.
+    pub fn check_complete(&self) -> Result<(), FileError> {
+        match (0..).zip(self.rows.keys()).find(|(i, k)| i != *k) {
+            Some((i, _)) => Err(self.missing(i)),
+            None if self.rows.is_empty() => Err(self.missing(0)),
+            None => Ok(()),
+        }
+    }
+
+    fn missing(&self, i: usize) -> FileError {
+        self.wrong("is missing").at(format!("patch {i}")).mend("every present patch needs a row")
+    }
+
     /// The radiosities of a scene before its last change: receivers without a row did not exist and count as 0.
     pub fn fit_before(&self, bands: &[String], n: usize) -> Result<Radiosity, FileError> {
         let spoken_of: Vec<bool> = (0..n).map(|i| self.rows.contains_key(&i)).collect();
@@ -290,15 +342,16 @@ impl SolutionFile {
                 .mend("was it computed for another scene, state, --max-edge or --per?"));
         }
         if let Some(i) = self.rows.keys().find(|i| **i >= n) {
-            return Err(self.wrong(format!("the scene has only {n} patches")).at(format!("patch {i}")));
+            return Err(self
+                .wrong(format!("the scene has only {n} patches"))
+                .at(format!("patch {i}"))
+                .mend("patches count from 0; was it computed for another scene, state, --max-edge or --per?"));
         }
         let mut values = vec![0.0; n * bands.len()];
         let all_have_errors = self.rows.values().all(|r| r.std_err.is_some());
         let mut errors = vec![0.0; n * bands.len()];
         for i in (0..n).filter(|i| present[*i]) {
-            let row = self.rows.get(&i).ok_or_else(|| {
-                self.wrong("is missing").at(format!("patch {i}")).mend("every present patch needs a row")
-            })?;
+            let row = self.rows.get(&i).ok_or_else(|| self.missing(i))?;
             for (c, from) in order.iter().enumerate() {
                 values[i * bands.len() + c] = row.values[*from];
                 errors[i * bands.len() + c] = row.std_err.as_ref().map_or(0.0, |e| e[*from]);

@@ -54,6 +54,8 @@ struct Manifest {
     #[serde(default)]
     findings: Vec<Finding>,
     sha256: BTreeMap<String, String>,
+    /// SHA-256 of this file with this string empty.
+    checksum: String,
 }
 
 /// True if a path looks like a reference directory.
@@ -83,8 +85,10 @@ impl StoredReference {
             waves: self.waves.clone(),
             findings: self.findings.clone(),
             sha256: files.iter().map(|(name, bytes)| (name.clone(), sha256(bytes))).collect(),
+            checksum: String::new(),
         };
-        files.push((MANIFEST.to_string(), json(&manifest)));
+        let checksum = sha256(&json(&manifest));
+        files.push((MANIFEST.to_string(), json(&Manifest { checksum, ..manifest })));
         files.push((TIMING.to_string(), json(&serde_json::json!({ "seconds": seconds }))));
         files
     }
@@ -164,15 +168,19 @@ impl Reader<'_> {
 
     fn damaged(&self, name: &str, problem: String) -> FileError {
         FileError::new(&self.path(name), problem)
-            .mend("the reference is damaged: compute it again with `etalon reference`")
+            .mend("the reference is damaged: compute it again with `etalon reference SCENE -o DIR`")
     }
 
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileError> {
-        std::fs::read(self.path(name)).map_err(|e| FileError::system(&self.path(name), "read", &e))
+        std::fs::read(self.path(name)).map_err(|e| match e.kind() {
+            std::io::ErrorKind::NotFound => self.damaged(name, "is missing".into()),
+            _ => FileError::system(&self.path(name), "read", &e).mend("a reference is a folder of readable files"),
+        })
     }
 
     fn parse<T: for<'de> Deserialize<'de>>(&self, name: &str, bytes: &[u8]) -> Result<T, FileError> {
-        serde_json::from_slice(bytes).map_err(|e| self.damaged(name, format!("cannot be read: {e}")))
+        serde_json::from_slice(bytes)
+            .map_err(|e| self.damaged(name, format!("cannot be read: {e}")).at(format!("line {}", e.line())))
     }
 
     fn manifest(&self) -> Result<Manifest, FileError> {
@@ -182,12 +190,21 @@ impl Reader<'_> {
         }
         let bytes = self.bytes(MANIFEST)?;
         let value: serde_json::Value = self.parse(MANIFEST, &bytes)?;
-        let format = value.get("format").and_then(|f| f.as_str()).unwrap_or("(none)");
-        if format != FORMAT {
-            return Err(FileError::new(&self.path(MANIFEST), format!("has format {format}"))
-                .mend(format!("this version reads {FORMAT}; a newer program wrote it, or another one")));
+        match value.get("format").and_then(|f| f.as_str()) {
+            Some(FORMAT) => {}
+            Some(format) if format.starts_with("etalon-reference/") => {
+                return Err(FileError::new(&self.path(MANIFEST), format!("has format {format}")).mend(format!(
+                    "this version reads {FORMAT}: update etalon if a newer one wrote it, or compute the reference again"
+                )));
+            }
+            _ => return Err(self.damaged(MANIFEST, format!("does not say that it is {FORMAT}"))),
         }
-        self.parse(MANIFEST, &bytes)
+        let manifest: Manifest = self.parse(MANIFEST, &bytes)?;
+        let text = String::from_utf8_lossy(&bytes).replace(&manifest.checksum, "");
+        if manifest.checksum != sha256(text.as_bytes()) {
+            return Err(self.damaged(MANIFEST, "does not have the checksum it was written with".into()));
+        }
+        Ok(manifest)
     }
 
     fn verified(&self, name: &str, manifest: &Manifest) -> Result<Vec<u8>, FileError> {

@@ -6,5 +6,5 @@ mod self_check;
 mod transport;
 
 pub use error::ReferenceError;
-pub use patch_system::{Options, Progress, Reference, check_size, compute};
+pub use patch_system::{Kept, Options, Progress, Reference, check_size, compute, compute_on};
 pub use self_check::{Evidence, test_reciprocity};

@@ -3,7 +3,8 @@
 use super::ReferenceError;
 use super::self_check::{self, Evidence};
 use super::transport::LeaveOneOut;
-use crate::estimate::{Casting, Entry, HitCounts, Plan, cast, element_emitters, patch_emitters};
+use crate::estimate::{Casting, Checkpoint, Entry, HitCounts, NoCheckpoint, Plan};
+use crate::estimate::{cast_on, element_emitters, patch_emitters};
 use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
 use crate::scene::Stage;
@@ -29,6 +30,20 @@ pub trait Progress: Sync {
     fn begin(&self, what: &str, total: Option<u64>);
     /// So many more steps are done.
     fn advance(&self, steps: u64);
+}
+
+/// Where the finished rows of the two castings are kept.
+#[derive(Clone, Copy)]
+pub struct Kept<'a> {
+    /// Rays of patches.
+    pub patches: &'a dyn Checkpoint,
+    /// Rays of elements.
+    pub elements: &'a dyn Checkpoint,
+}
+
+impl Kept<'static> {
+    /// Nothing is kept.
+    pub const NONE: Self = Self { patches: &NoCheckpoint, elements: &NoCheckpoint };
 }
 
 /// A finished reference.
@@ -76,6 +91,20 @@ pub fn compute(
     evidence: &Evidence,
     progress: &dyn Progress,
 ) -> Result<Reference, ReferenceError> {
+    compute_on(tracer, options, evidence, progress, Kept::NONE)
+}
+
+/// The same, going on from what an interrupted run has kept: the reference is the same, bit by bit.
+///
+/// # Errors
+/// As [`compute`].
+pub fn compute_on(
+    tracer: &Tracer,
+    options: &Options,
+    evidence: &Evidence,
+    progress: &dyn Progress,
+    kept: Kept,
+) -> Result<Reference, ReferenceError> {
     let stage = tracer.stage();
     check_size(stage, &options.plan)?;
     let inputs = Inputs::of(stage);
@@ -91,10 +120,11 @@ pub fn compute(
         *solved.borrow_mut() = Some(result);
         relative
     };
-    let casting = cast(tracer, &emitters, stream, &options.plan, &error, &|rays| progress.advance(rays));
+    let casting =
+        cast_on(tracer, &emitters, stream, &options.plan, &error, &|rays| progress.advance(rays), kept.patches);
     let solved = solved.into_inner().expect("every plan has a wave")?;
     let elements = if stage.has_elements() {
-        Some(gather_elements(tracer, &inputs, &solved.replicates, &casting, stream, progress))
+        Some(gather_elements(tracer, &inputs, &solved.replicates, &casting, stream, progress, kept.elements))
     } else {
         None
     };
@@ -205,6 +235,7 @@ fn gather_elements(
     casting: &Casting,
     stream: Stream,
     progress: &dyn Progress,
+    kept: &dyn Checkpoint,
 ) -> Replicates {
     let stage = tracer.stage();
     let emitters = element_emitters(stage);
@@ -215,7 +246,7 @@ fn gather_elements(
         max_time: None,
     };
     begin_casting(progress, "casting rays of elements", &plan, emitters.iter().flatten().count());
-    let elements = cast(tracer, &emitters, stream, &plan, &|_| 0.0, &|rays| progress.advance(rays));
+    let elements = cast_on(tracer, &emitters, stream, &plan, &|_| 0.0, &|rays| progress.advance(rays), kept);
     let bands = inputs.bands;
     let width = patches.count() * bands;
     let mut sources = vec![0.0; stage.patch_count() * width];

@@ -1,11 +1,15 @@
 //! Conducts whole runs: reference, solve, check, demo. Hands finished records to reports, which only format.
 
 mod judge;
+mod kept;
 mod record;
+mod reuse;
 mod run;
 mod session;
 
 pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, judge};
+pub use kept::KeptWork;
 pub use record::{Record, Setting};
-pub use run::{SolveOutcome, SolveRequest, reference, solve};
+pub use reuse::falls_short;
+pub use run::{SolveOutcome, SolveRequest, reference, reference_on, solve};
 pub use session::Session;

@@ -5,7 +5,7 @@ use crate::estimate::{Plan, cast, element_emitters, patch_emitters};
 use crate::io::StoredReference;
 use crate::methods::{Method, MethodError, MethodInfo, PatchVectors, gather, hemicube};
 use crate::raycast::agree;
-use crate::reference::{self, Evidence, Options, Progress, Reference, ReferenceError};
+use crate::reference::{self, Evidence, Kept, Options, Progress, Reference, ReferenceError};
 use crate::sampling::{Role, Stream};
 use crate::scene::Stage;
 use crate::solution::{FormFactors, Radiosity};
@@ -20,9 +20,22 @@ pub fn reference(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<(StoredReference, Reference), ReferenceError> {
+    reference_on(session, options, progress, Kept::NONE)
+}
+
+/// The same, going on from what an interrupted run has kept.
+///
+/// # Errors
+/// As [`reference()`].
+pub fn reference_on(
+    session: &Session,
+    options: &Options,
+    progress: &dyn Progress,
+    kept: Kept,
+) -> Result<(StoredReference, Reference), ReferenceError> {
     let stage = session.stage();
     let evidence = evidence(session, options.seed);
-    let reference = reference::compute(&session.tracer(), options, &evidence, progress)?;
+    let reference = reference::compute_on(&session.tracer(), options, &evidence, progress, kept)?;
     let stored = StoredReference {
         stage: stage.clone(),
         scene_hash: stage.hash(),

@@ -6,7 +6,7 @@ use crate::cli::args::{CheckArgs, CompareArgs, Kernel, OnInconclusive, Truth};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
-use crate::io::{SolutionFile, StoredReference, is_reference, read_solution};
+use crate::io::{SolutionFile, StoredReference, atomic, is_reference, read_solution};
 use crate::metrics::{Decision, Limits, Verdict};
 use crate::raycast::KernelKind;
 use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, text_summary};
@@ -107,6 +107,7 @@ impl Input {
 /// Reads everything, judges, and writes the files asked for.
 fn run(args: &CompareArgs, limits: Option<Limits>, kernel: KernelKind, console: &Console) -> Result<Record, Failure> {
     args.markdown.as_deref().map(inputs::check_writable).transpose()?;
+    args.report.as_deref().map(atomic::check_folder).transpose()?;
     if !(0.0..1.0).contains(&args.confidence.0) || args.confidence.0 == 0.0 {
         return Err(Failure::input("--confidence must lie between 0 and 1: 0.95 for example"));
     }
@@ -184,7 +185,10 @@ fn stage(args: &CompareArgs, reference: &Input, console: &Console) -> Result<Sta
         ))),
         (Input::Reference(r), _) => Ok(r.stage.clone()),
         (Input::Solution(_), Some(stage)) => Ok(stage),
-        (Input::Solution(s), None) => Ok(anonymous_stage(s.len(), guess_photometry(s))),
+        (Input::Solution(s), None) => {
+            s.check_complete()?;
+            Ok(anonymous_stage(s.len(), guess_photometry(s)))
+        }
     }
 }
 

@@ -83,15 +83,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Fails before the work if a result could not be written after it.
 pub fn check_writable(path: &Path) -> Result<(), Failure> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let complain = |why: &str| Err(Failure::input(format!("{}: {why}", path.display())).at(path.display().to_string()));
-    if path.is_dir() {
-        return complain("is a folder; name a file");
-    }
-    if !folder.is_dir() {
-        return complain("its folder does not exist; make it first");
-    }
-    Ok(())
+    atomic::check(path).map_err(|e| Failure::input(e.to_string()).at(path.display().to_string()))
 }
 
 /// "1 234 567", for people.

@@ -4,12 +4,16 @@ use super::inputs;
 use crate::cli::args::{ReferenceArgs, Truth};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
-use crate::io::{StoredReference, write_folder};
-use crate::raycast::KernelKind;
+use crate::cli::interrupt;
+use crate::io::{Claim, FileError, Found, StoredReference};
+use crate::raycast::{KernelInfo, KernelKind, open_kernels};
 use crate::reference::Options;
-use crate::study;
+use crate::scene::Stage;
+use crate::solution::TruthLevel;
+use crate::study::{self, KeptWork, Session};
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The file that marks a folder as a reference.
@@ -21,20 +25,116 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
             "--truth continuous is not in this version: only patch-system references can be computed",
         ));
     }
+    let begin = Instant::now();
     let options = Options { plan: inputs::plan(&args.rays)?, seed: args.rays.seed };
     let stage = inputs::stage(&args.scene, console)?;
+    if let Some(stored) = already_there(args, &stage, &options, kernel, console)? {
+        let text = text(&stored, &args.output, "is already there in");
+        console.result(&text, &summary(&stored, begin.elapsed().as_secs_f64(), true));
+        return Ok(exit::DONE);
+    }
+    let claim = Claim::take(&args.output, MARKER)?;
     let session = inputs::session(&stage, kernel, console)?;
-    let begin = Instant::now();
-    let (stored, reference) = study::reference(&session, &options, console)?;
+    let work = open_work(&claim, &session, &options, console)?;
+    let armed = arm(&work);
+    let (stored, reference) = study::reference_on(&session, &options, console, work.kept())?;
     console.end();
     let seconds = begin.elapsed().as_secs_f64();
-    write_folder(&args.output, &stored.files(seconds), MARKER)?;
+    // Should the result find no room, the work is not lost.
+    let rows = work.flush();
+    claim.publish(&stored.files(seconds)).map_err(|e| keep_in_mind(e, rows))?;
+    drop(armed);
     if reference.missed_target {
         console.notice(&format!("the target error was not reached: {:.2e}", stored.provenance.relative_error));
     }
-    console.result(&text(&stored, &args.output), &summary(&stored, seconds));
+    console.result(&text(&stored, &args.output, "written to"), &summary(&stored, seconds, false));
     explain_failures(&stored, console);
     Ok(if stored.self_check.passed() { exit::DONE } else { exit::SELF_CHECK })
+}
+
+/// The reference that is stored already, if it answers what is asked.
+fn already_there(
+    args: &ReferenceArgs,
+    stage: &Stage,
+    options: &Options,
+    kernel: KernelKind,
+    console: &Console,
+) -> Result<Option<StoredReference>, Failure> {
+    if args.force || !args.output.join(MARKER).is_file() {
+        return Ok(None);
+    }
+    let again = |why: String| {
+        console.notice(&format!("{}: {why}; it is computed again", args.output.display()));
+        Ok(None)
+    };
+    let stored = match StoredReference::read(&args.output) {
+        Ok(stored) => stored,
+        Err(e) => return again(format!("the reference there cannot be used ({})", e.problem)),
+    };
+    let kernels = open_kernels(kernel, stage)?;
+    let kernel = kernels.kernel.info();
+    match study::falls_short(&stored, stage, options, kernel, TruthLevel::PatchSystem) {
+        None => {
+            forget_journal(&args.output, stage, kernel, options);
+            Ok(Some(stored))
+        }
+        Some(lack) => again(format!("the reference there has {lack}")),
+    }
+}
+
+/// A run that died after storing its reference leaves its journal: nobody needs it any more. Where that cannot be
+/// removed, or somebody is at work, it stays.
+fn forget_journal(output: &Path, stage: &Stage, kernel: &KernelInfo, options: &Options) {
+    if Claim::is_begun(output)
+        && let Ok(claim) = Claim::take(output, MARKER)
+    {
+        let _ = KeptWork::forget(&claim.journal(), stage, kernel, options);
+    }
+}
+
+/// Opens the journal of this run beside the target, and says what an earlier one has left.
+fn open_work(claim: &Claim, session: &Session, options: &Options, console: &Console) -> Result<Arc<KeptWork>, Failure> {
+    let path = claim.journal();
+    let work = KeptWork::open(&path, session, options)
+        .map_err(|e| FileError::system(&path, "read and changed", &e).mend("remove it, or name another folder"))?;
+    match work.found() {
+        Found::Nothing => {}
+        Found::Records(rows) => {
+            let rows = inputs::thousands(*rows);
+            let of = work.total().map_or(String::new(), |t| format!(" of {}", inputs::thousands(t)));
+            console.notice(&format!("going on from an interrupted run: {rows}{of} rows are there already"));
+        }
+        Found::Other => {
+            console.notice("an interrupted run with other settings was there; it is dropped, all rows are cast anew");
+        }
+    }
+    Ok(Arc::new(work))
+}
+
+/// An interruption keeps the finished rows and says how many there are.
+fn arm(work: &Arc<KeptWork>) -> interrupt::Armed {
+    let work = work.clone();
+    interrupt::before_dying(move || {
+        let rows = work.flush();
+        let there = work.is_there();
+        let lost = work.trouble().map_or(String::new(), |t| format!(" ({t})"));
+        match (rows, there) {
+            (0, _) => format!("no row was finished yet{lost}; the same command begins again"),
+            (_, false) => "the reference was complete already, and is written".into(),
+            (_, true) => {
+                let of = work.total().map_or(String::new(), |t| format!(" of {}", inputs::thousands(t)));
+                let rows = inputs::thousands(rows);
+                format!("{rows}{of} rows are kept{lost}; the same command goes on from there")
+            }
+        }
+    })
+}
+
+fn keep_in_mind(mut e: FileError, rows: u64) -> FileError {
+    if rows > 0 {
+        e.mend += &format!(" ({} rows of it are kept)", inputs::thousands(rows));
+    }
+    e
 }
 
 /// Says on stderr which self-checks failed.
@@ -44,12 +144,12 @@ pub fn explain_failures(stored: &StoredReference, console: &Console) {
     }
 }
 
-fn summary(r: &StoredReference, seconds: f64) -> Value {
+fn summary(r: &StoredReference, seconds: f64, already_there: bool) -> Value {
     let mut json = serde_json::to_value(&r.provenance).expect("provenance serialises");
     let more = json!({
         "scene": r.stage.name, "scene_hash": r.scene_hash, "state": r.stage.state, "patches": r.stage.patch_count(),
         "waves": r.waves, "passed_self_check": r.self_check.passed(), "self_check": r.self_check.checks,
-        "seconds": seconds,
+        "already_there": already_there, "seconds": seconds,
     });
     if let (Value::Object(json), Value::Object(more)) = (&mut json, more) {
         json.extend(more);
@@ -57,10 +157,10 @@ fn summary(r: &StoredReference, seconds: f64) -> Value {
     json
 }
 
-fn text(r: &StoredReference, output: &Path) -> String {
+fn text(r: &StoredReference, output: &Path, what: &str) -> String {
     let p = &r.provenance;
     let mut text = format!(
-        "reference of {} ({} patches, state {}) written to {}\n\
+        "reference of {} ({} patches, state {}) {what} {}\n\
          {} rays per patch in {} randomisations ({} {}): relative error {:.2e} (one sigma, norm of eq. 7)",
         r.stage.name,
         r.stage.patch_count(),
