@@ -33,7 +33,8 @@ pub struct NoiseTest {
     pub single: Beyond,
     /// Beyond what all tests together allow (Sidak).
     pub family: Beyond,
-    /// Difference in standard errors of both sides, per receiver; `None` for what cannot be tested.
+    /// Difference in standard errors of both sides, per receiver; 0 where the reference has no noise and the solution
+    /// is right, `None` where it is wrong or absent.
     pub scores: Vec<Option<f64>>,
 }
 
@@ -80,20 +81,22 @@ impl Against {
 
 /// Tests every receiver of `all` (absent ones are `None`) at a two-sided `level`.
 pub(super) fn noise_test(all: &[Option<Against>], freedom: f64, level: f64) -> NoiseTest {
-    let (mut equal, mut different) = (0, 0);
-    let mut score = |a: &Option<Against>| match a.as_ref()?.score() {
-        Score::Tested(t) => Some(t),
+    let (mut equal, mut different, mut pairs) = (0, 0, Vec::new());
+    let score = |a: &Option<Against>| match a.as_ref()?.score() {
+        Score::Tested(t) => {
+            pairs.push((t, a.as_ref()?.area));
+            Some(t)
+        }
         Score::Equal => {
             equal += 1;
-            None
+            Some(0.0)
         }
         Score::Different => {
             different += 1;
             None
         }
     };
-    let scores: Vec<Option<f64>> = all.iter().map(&mut score).collect();
-    let pairs: Vec<(f64, f64)> = scores.iter().zip(all).filter_map(|(s, a)| Some(((*s)?, a.as_ref()?.area))).collect();
+    let scores: Vec<Option<f64>> = all.iter().map(score).collect();
     let axis = Histogram::empty(reach(&pairs, BULK).unwrap_or(0.0).clamp(REACH.0, REACH.1));
     NoiseTest {
         freedom,
@@ -131,7 +134,7 @@ mod tests {
         let t = noise_test(&all, 15.0, 0.05);
         assert_eq!((t.tested, t.exact_and_equal, t.exact_and_different), (3, 1, 1));
         let scores: Vec<Option<f64>> = t.scores.iter().map(|s| s.map(|s| s.round())).collect();
-        assert_eq!(scores, [Some(2.0), None, None, None, Some(-30.0), Some(2.0)]);
+        assert_eq!(scores, [Some(2.0), None, Some(0.0), None, Some(-30.0), Some(2.0)]);
         assert!((t.shares.below - 1.0 / 3.0).abs() < 1e-15 && t.shares.above == 0.0);
         // Thresholds of t with 15 degrees: 2.1314 alone; for three tests the level is 0.016952.
         assert!((t.single.threshold - 2.13144954555978).abs() < 1e-9);

@@ -1,13 +1,17 @@
-//! Everything the page says, as ready strings: what the template gets, and what `record.json` keeps.
+//! Everything the page says, as ready strings: what the template gets.
 
 use super::bars::{Bar, axis_end, bar};
+use super::charts::{Chart, charts};
+use super::findings::{FindingRow, finding_rows};
+use super::groups::{GroupTable, group_tables};
+use super::sources::{Card, cards};
 use crate::metrics::Verdict;
 use crate::report::asked::Level;
 use crate::report::figures::{Figure, ViewFigures};
 use crate::report::format::{confidence, count, round_number, significant};
 use crate::report::lines::worst_title;
 use crate::report::{ColourBar, Mark, MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
-use crate::study::Record;
+use crate::study::{Part, Record, Setting};
 use serde::Serialize;
 
 #[derive(Debug, Serialize)]
@@ -16,15 +20,20 @@ pub(super) struct Page {
     pub scene: String,
     pub state: Option<String>,
     pub solution: String,
+    pub against: &'static str,
     pub verdict: VerdictBand,
     pub facts: Vec<Pair>,
     pub warnings: Vec<Pair>,
     pub metrics: Metrics,
     pub views: Vec<ViewBlock>,
     pub worst: Worst,
-    pub settings: Vec<SettingRow>,
-    pub provenance: Vec<Pair>,
+    pub groups: Vec<GroupTable>,
+    pub charts: Vec<Chart>,
+    pub sources: Vec<Card>,
+    pub findings: Vec<FindingRow>,
     pub notices: Vec<String>,
+    pub settings: Vec<SettingGroup>,
+    pub provenance: Vec<Pair>,
     pub replay: String,
     /// Wall-clock data: the only part that differs between runs on the same input.
     pub timing: Vec<Pair>,
@@ -132,10 +141,17 @@ pub(super) struct WorstRow {
 }
 
 #[derive(Debug, Serialize)]
+pub(super) struct SettingGroup {
+    pub title: &'static str,
+    pub rows: Vec<SettingRow>,
+}
+
+#[derive(Debug, Serialize)]
 pub(super) struct SettingRow {
     pub name: String,
     pub value: String,
-    pub changed: bool,
+    /// The default, where the value is another.
+    pub instead_of: Option<String>,
 }
 
 /// Name of a picture in the report's folder.
@@ -155,15 +171,20 @@ impl Page {
             scene: record.stage.name.clone(),
             state: (record.stage.state > 0).then(|| format!("after edit {}", record.stage.state)),
             solution: record.solution_name.clone(),
+            against: if record.truth == "solution" { "against another solution" } else { "judged by ray casting" },
             verdict: VerdictBand { class: class(head.verdict), word: head.word, sentence: minus(&head.sentence) },
             facts: facts(record),
             warnings: warnings(record).into_iter().map(|(label, text)| Pair { label, text: minus(&text) }).collect(),
             metrics: metrics(record),
             views: views.iter().map(view_block).collect(),
             worst: worst(record, views),
-            settings: record.settings.iter().map(setting).collect(),
-            provenance: record.provenance.iter().map(|(what, value)| pair(what, value)).collect(),
+            groups: group_tables(record),
+            charts: charts(record),
+            sources: cards(record),
+            findings: finding_rows(record),
             notices: record.notices.clone(),
+            settings: settings(record),
+            provenance: record.provenance.iter().map(|(what, value)| pair(what, value)).collect(),
             replay: record.replay.clone(),
             timing: timing.iter().map(|p| pair(&p.name, format!("{} s", significant(p.seconds, 3)))).collect(),
             program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
@@ -299,17 +320,26 @@ fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
     Worst { title, noun, any_hidden: rows.iter().any(|r| r.hidden), rows }
 }
 
-fn setting(s: &crate::study::Setting) -> SettingRow {
-    SettingRow { name: s.name.clone(), value: s.value.clone(), changed: !s.is_default }
+/// Settings by whose they are.
+fn settings(record: &Record) -> Vec<SettingGroup> {
+    let row = |s: &Setting| SettingRow {
+        name: s.name.clone(),
+        value: s.value.clone(),
+        instead_of: s.default.clone().filter(|_| s.differs()),
+    };
+    let group =
+        |(of, title)| SettingGroup { title, rows: record.settings.iter().filter(|s| s.of == of).map(row).collect() };
+    let all = [(Part::Judgement, "Judgement"), (Part::Reference, "Reference"), (Part::Solution, "Solution")];
+    all.into_iter().map(group).filter(|g| !g.rows.is_empty()).collect()
 }
 
 /// A true minus sign before numbers, and narrow no-break spaces before per cent signs.
-fn minus(text: &str) -> String {
+pub(super) fn minus(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut chars = text.chars().peekable();
     let mut before = ' ';
     while let Some(c) = chars.next() {
-        let sign = c == '-' && matches!(before, ' ' | '(') && chars.peek().is_some_and(char::is_ascii_digit);
+        let sign = c == '-' && matches!(before, ' ' | '(' | '\u{b1}') && chars.peek().is_some_and(char::is_ascii_digit);
         let unit = c == ' ' && before.is_ascii_digit() && chars.peek() == Some(&'%');
         out.push(if sign {
             '\u{2212}'
