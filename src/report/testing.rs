@@ -66,16 +66,19 @@ pub(crate) fn record() -> Record {
     }
 }
 
-/// The real breakdown against twelve made-up replicates that scatter by 0.3 %, each patch in a way of its own.
+/// The real breakdown against twelve made-up replicates: what is reflected scatters by 0.3 %, each patch in a way of its
+/// own.
 fn breakdown(stage: &Stage, reference: &Radiosity, solution: &Radiosity) -> Breakdown {
-    let scatter = |r: usize, k: usize| 1.0 + 0.003 * ((7 * r * r + 3 * r * (k / 3)) as f64).sin();
-    let row = |r: usize| reference.values.iter().enumerate().map(|(k, b)| b * scatter(r, k)).collect();
+    let scatter = |r: usize, k: usize| 0.003 * ((7 * r * r + 3 * r * (k / 3)) as f64).sin();
+    let emission = stage.emissions();
+    let noisy = |r: usize, k: usize, b: f64| b + (b - emission[k]) * scatter(r, k);
+    let row = |r: usize| reference.values.iter().enumerate().map(|(k, b)| noisy(r, k, *b)).collect();
     let replicates = Replicates { bands: reference.bands, replicates: (0..12).map(row).collect() };
     let surfaces: Vec<&str> = (0..stage.patch_count()).map(|i| stage.surface_name(i)).collect();
     let objects: Vec<&str> = surfaces.iter().map(|s| if s.contains("wall") { "walls" } else { "rest" }).collect();
     let judged = Judged {
         areas: &stage.areas(),
-        emission: &stage.emissions(),
+        emission: &emission,
         surfaces: &surfaces,
         bands: &stage.photometry.bands,
         weights: &stage.photometry.weights,

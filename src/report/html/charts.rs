@@ -3,7 +3,7 @@
 use super::context::minus;
 use crate::metrics::{Breakdown, Histogram, NoiseTest};
 use crate::report::asked::{Level, is_reflected};
-use crate::report::format::{confidence, count, percent, round_number, significant};
+use crate::report::format::{confidence, count, percent, percent_exact, round_number, significant};
 use crate::study::Record;
 use serde::Serialize;
 
@@ -35,7 +35,7 @@ pub(super) struct ChartBar {
     pub y: String,
     pub width: String,
     pub height: String,
-    /// `cold` below, `even` about, `warm` above what is right; `end` is added for what lies beyond the axis.
+    /// `cold` below, `even` about, `warm` above what is right.
     pub class: &'static str,
     /// What a reader sees who points at it.
     pub hint: String,
@@ -58,7 +58,7 @@ fn of_errors(record: &Record, breakdown: &Breakdown, shares: &Histogram) -> Char
          area errs by less than {}; red is too bright, blue too dark.",
         significant(breakdown.reference_rms, 4),
         percent(middle),
-        percent(0.5 * shares.width)
+        percent_exact(0.5 * shares.width)
     );
     frame.draw("errors", "How large the errors are", caption, "% of the reference's luminance")
 }
@@ -87,7 +87,7 @@ fn of_noise(record: &Record, noise: &NoiseTest) -> Chart {
     caption += if family.count + noise.exact_and_different == 0 {
         " No single one stands out of the noise."
     } else {
-        " Those are errors of the solution, not noise of the reference."
+        " Those are errors of the solution rather than noise of the reference."
     };
     let mut chart = frame.draw("noise", "Error or noise?", caption, "standard errors");
     chart.curve_name = format!("noise alone (Student t, {} degrees of freedom)", noise.freedom);

@@ -4,14 +4,16 @@ use super::bars::{Bar, axis_end, bar};
 use super::charts::{Chart, charts};
 use super::findings::{FindingRow, finding_rows};
 use super::groups::{GroupTable, group_tables};
+use super::pictures::{ViewBlock, view_block};
+use super::settings::{SettingGroup, settings};
 use super::sources::{Card, cards};
 use crate::metrics::Verdict;
 use crate::report::asked::Level;
-use crate::report::figures::{Figure, ViewFigures};
-use crate::report::format::{confidence, count, round_number, significant};
+use crate::report::figures::ViewFigures;
+use crate::report::format::{confidence, count, significant};
 use crate::report::lines::worst_title;
-use crate::report::{ColourBar, Mark, MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
-use crate::study::{Part, Record, Setting};
+use crate::report::{MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
+use crate::study::Record;
 use serde::Serialize;
 
 #[derive(Debug, Serialize)]
@@ -77,48 +79,6 @@ pub(super) struct MetricRow {
 }
 
 #[derive(Debug, Serialize)]
-pub(super) struct ViewBlock {
-    pub title: String,
-    pub fitted: bool,
-    pub exr: String,
-    pub figures: Vec<FigureBlock>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct FigureBlock {
-    pub id: String,
-    pub kind: &'static str,
-    pub title: &'static str,
-    pub caption: String,
-    pub alt: String,
-    /// Name of the picture in the report's folder.
-    pub file: String,
-    pub width: u32,
-    pub height: u32,
-    pub bar: Option<BarBlock>,
-    pub marks: Vec<MarkBlock>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct BarBlock {
-    pub stops: Vec<(String, String)>,
-    pub ticks: Vec<(String, String)>,
-    pub unit: &'static str,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct MarkBlock {
-    pub rank: usize,
-    pub number: usize,
-    pub x: String,
-    pub y: String,
-    pub radius: String,
-    pub font: String,
-    /// False where a worse patch is so near that two labels would cover each other: a dot has to do.
-    pub labelled: bool,
-}
-
-#[derive(Debug, Serialize)]
 pub(super) struct Worst {
     pub title: String,
     pub noun: &'static str,
@@ -138,25 +98,6 @@ pub(super) struct WorstRow {
     pub relative: Option<String>,
     pub in_std_errs: Option<String>,
     pub hidden: bool,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct SettingGroup {
-    pub title: &'static str,
-    pub rows: Vec<SettingRow>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct SettingRow {
-    pub name: String,
-    pub value: String,
-    /// The default, where the value is another.
-    pub instead_of: Option<String>,
-}
-
-/// Name of a picture in the report's folder.
-pub(super) fn picture_name(stem: &str, kind: &str) -> String {
-    format!("{stem}-{kind}.png")
 }
 
 fn pair(label: &str, text: impl Into<String>) -> Pair {
@@ -245,63 +186,6 @@ fn metric_row(line: MetricLine, end: Option<f64>) -> MetricRow {
     }
 }
 
-fn view_block(view: &ViewFigures) -> ViewBlock {
-    ViewBlock {
-        title: view.camera.clone(),
-        fitted: view.fitted,
-        exr: format!("{}.exr", view.stem),
-        figures: view.figures.iter().map(|f| figure_block(view, f)).collect(),
-    }
-}
-
-fn figure_block(view: &ViewFigures, figure: &Figure) -> FigureBlock {
-    FigureBlock {
-        id: format!("{}-{}", view.stem, figure.kind),
-        kind: figure.kind,
-        title: figure.title,
-        caption: figure.caption.clone(),
-        alt: format!("{} seen by camera {}", figure.title, view.camera),
-        file: picture_name(&view.stem, figure.kind),
-        width: figure.raster.width,
-        height: figure.raster.height,
-        bar: figure.bar.as_ref().map(bar_block),
-        // One picture with numbers is enough; the others are to be looked at.
-        marks: if figure.kind == "difference" { mark_blocks(view, figure.raster.width) } else { Vec::new() },
-    }
-}
-
-/// Labels sized to the picture, worst first.
-fn mark_blocks(view: &ViewFigures, width: u32) -> Vec<MarkBlock> {
-    let radius = f64::from(width) / 72.0;
-    let mut kept: Vec<(f64, f64)> = Vec::new();
-    let mut block = |m: &Mark| {
-        let free = kept.iter().all(|(x, y)| (x - m.x).hypot(y - m.y) > 2.0 * radius);
-        if free {
-            kept.push((m.x, m.y));
-        }
-        MarkBlock {
-            rank: m.rank,
-            number: m.number,
-            x: format!("{:.1}", m.x),
-            y: format!("{:.1}", m.y),
-            radius: format!("{:.1}", if free { radius } else { 0.35 * radius }),
-            font: format!("{:.1}", 1.2 * radius),
-            labelled: free,
-        }
-    };
-    view.marks.iter().map(&mut block).collect()
-}
-
-fn bar_block(bar: &ColourBar) -> BarBlock {
-    let last = bar.colours.len().max(2) - 1;
-    let stop = |(k, colour): (usize, &String)| (round_number(100.0 * k as f64 / last as f64), colour.clone());
-    BarBlock {
-        stops: bar.colours.iter().enumerate().map(stop).collect(),
-        ticks: bar.ticks.iter().map(|(at, label)| (at.clone(), minus(label))).collect(),
-        unit: bar.unit,
-    }
-}
-
 fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
     let in_sight = |number| views.iter().any(|v| v.marks.iter().any(|m| m.number == number));
     let row = |(k, w): (usize, crate::report::WorstLine)| WorstRow {
@@ -318,19 +202,6 @@ fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
     let rows: Vec<WorstRow> = worst_lines(record).into_iter().enumerate().map(row).collect();
     let (title, noun) = (worst_title(record), Level::of(record).noun());
     Worst { title, noun, any_hidden: rows.iter().any(|r| r.hidden), rows }
-}
-
-/// Settings by whose they are.
-fn settings(record: &Record) -> Vec<SettingGroup> {
-    let row = |s: &Setting| SettingRow {
-        name: s.name.clone(),
-        value: s.value.clone(),
-        instead_of: s.default.clone().filter(|_| s.differs()),
-    };
-    let group =
-        |(of, title)| SettingGroup { title, rows: record.settings.iter().filter(|s| s.of == of).map(row).collect() };
-    let all = [(Part::Judgement, "Judgement"), (Part::Reference, "Reference"), (Part::Solution, "Solution")];
-    all.into_iter().map(group).filter(|g| !g.rows.is_empty()).collect()
 }
 
 /// A true minus sign before numbers, and narrow no-break spaces before per cent signs.

@@ -3,7 +3,7 @@
 use super::context::minus;
 use crate::metrics::GroupError;
 use crate::report::asked::Level;
-use crate::report::format::{column, count, percent, percent_estimate, places, significant};
+use crate::report::format::{column, column_error, count, percent, percent_estimate, places, significant};
 use crate::study::Record;
 use serde::Serialize;
 
@@ -89,7 +89,7 @@ fn table(title: &'static str, noun: &'static str, level: Level, groups: &[GroupE
         reference: minus(&columns[0][k]),
         solution: minus(&columns[1][k]),
         bias: minus(&columns[2][k]),
-        std_err: g.bias.std_err.map(|e| significant(e, 2)),
+        std_err: g.bias.std_err.map(|e| column_error(e, places(&biases))),
         relative: (g.reference.value != 0.0).then(|| minus(&signed_percent(g.bias.value / g.reference.value))),
         share: g.share.as_ref().map(share),
         worst: g.worst,

@@ -5,6 +5,8 @@ mod charts;
 mod context;
 mod findings;
 mod groups;
+mod pictures;
+mod settings;
 mod sources;
 
 use super::artifact::check_shape;
@@ -63,7 +65,7 @@ fn encode(views: &[ViewFigures]) -> Result<Vec<Artifact>, ReportError> {
     let all = views.iter().flat_map(|v| v.figures.iter().map(move |f| (v, f)));
     let one = |(v, f): (&ViewFigures, &super::Figure)| {
         let bytes = png(f.raster.width, f.raster.height, &f.raster.rgba)?;
-        Ok(Artifact::new(context::picture_name(&v.stem, f.kind), bytes))
+        Ok(Artifact::new(pictures::picture_name(&v.stem, f.kind), bytes))
     };
     all.map(one).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::context::minus;
 use crate::report::asked::Level;
-use crate::report::format::{column, count, percent, places, significant};
+use crate::report::format::{column, column_error, count, percent, places, significant, with_error};
 use crate::stats::Estimate;
 use crate::study::{Contributions, Record, Source};
 use serde::Serialize;
@@ -48,14 +48,20 @@ fn card(rank: usize, noun: &'static str, c: &Contributions) -> Card {
     let sources: Vec<&Source> = c.sources.iter().chain(&c.others).collect();
     let mut lights: Vec<f64> = sources.iter().map(|s| s.luminance.value).collect();
     lights.extend([c.emission, c.sum.value, c.reference.value]);
-    let lights = column(&lights, places(&lights), false);
+    let place = places(&lights);
+    let lights = column(&lights, place, false);
     let mut handed: Vec<f64> = sources.iter().map(|s| s.handed_on.value).collect();
     handed.push(c.difference);
     let handed = column(&handed, places(&handed), true);
-    let term = |k: usize, e: &Estimate| Term { value: minus(&lights[k]), std_err: plus_minus(e) };
-    let share = |part: Option<f64>| part.map(|p| (percent(p), format!("{:.1}", 100.0 * p.clamp(0.0, 1.0))));
+    let error = |e: &Estimate| e.std_err.filter(|e| *e > 0.0).map(|e| column_error(e, place));
+    let term = |k: usize, e: &Estimate| Term { value: minus(&lights[k]), std_err: error(e) };
+    let share = |part: Option<f64>| part.map(|p| (minus(&percent(p)), format!("{:.1}", 100.0 * p.clamp(0.0, 1.0))));
     let row = |(k, s): (usize, &&Source)| SourceRow {
-        name: if s.surface.is_empty() { format!("{} more surfaces", s.surfaces) } else { s.surface.clone() },
+        name: match (s.surface.as_str(), s.surfaces) {
+            ("", 1) => "1 more surface".into(),
+            ("", n) => format!("{n} more surfaces"),
+            (name, _) => name.into(),
+        },
         light: term(k, &s.luminance),
         share: share(s.share),
         handed_on: Some(minus(&handed[k])),
@@ -86,19 +92,9 @@ fn sentence(noun: &str, c: &Contributions) -> String {
         "Too {way} by {}: {} of it is made at this {noun} itself, by its form factors or by the solver; {} is handed on \
          by what it sees.",
         significant(c.difference.abs(), 3),
-        with_error(&c.own),
-        with_error(&c.handed_on)
+        with_error(c.own.value, c.own.std_err),
+        with_error(c.handed_on.value, c.handed_on.std_err)
     )
-}
-
-fn with_error(e: &Estimate) -> String {
-    let sign = if e.value > 0.0 { "+" } else { "" };
-    let error = plus_minus(e).map_or(String::new(), |e| format!(" \u{b1} {e}"));
-    format!("{sign}{}{error}", significant(e.value, 3))
-}
-
-fn plus_minus(e: &Estimate) -> Option<String> {
-    e.std_err.filter(|e| *e > 0.0).map(|e| significant(e, 2))
 }
 
 #[cfg(test)]
@@ -119,6 +115,6 @@ mod tests {
         let names: Vec<&str> = card.rows.iter().map(|r| r.name.as_str()).collect();
         assert_eq!(names, ["lamp", "red wall", "3 more surfaces"]);
         let sum: f64 = card.rows.iter().map(|r| r.light.value.parse::<f64>().expect("a number")).sum();
-        assert_eq!(card.sum.value, format!("{sum:.4}"));
+        assert_eq!(card.sum.value, format!("{sum:.3}"));
     }
 }
