@@ -2,9 +2,13 @@
 //! Areas, weights and names come in as data; [`decide`] is the only place that decides.
 
 mod bias;
+mod breakdown;
 mod check;
 mod compare;
 mod error;
+mod groups;
+mod histogram;
+mod noise;
 mod quantity;
 mod rms;
 mod sums;
@@ -13,8 +17,12 @@ mod types;
 mod verdict;
 
 pub use bias::relative_bias;
+pub use breakdown::{Breakdown, break_down};
 pub use compare::compare;
 pub use error::MetricsError;
+pub use groups::GroupError;
+pub use histogram::Histogram;
+pub use noise::{Beyond, NoiseTest};
 pub use rms::{Rms, relative_rms};
 pub use top1::{top1_count, top1_rms, top1_set};
 pub use types::{Comparison, Decision, Judged, LimitOutcome, Limits, Truth, Verdict, WorstPatch};

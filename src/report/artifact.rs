@@ -77,6 +77,17 @@ pub enum ReportError {
     /// The JUnit file could not be written.
     #[error("the JUnit file could not be written: {0}")]
     JUnit(#[from] quick_junit::SerializeError),
+    /// A file of a report folder is of another format.
+    #[error("has format {found}; this version reads {wanted}")]
+    Format {
+        /// Its format.
+        found: String,
+        /// The format that can be read.
+        wanted: &'static str,
+    },
+    /// A file of a report folder cannot be read.
+    #[error("cannot be read: {0}")]
+    NotARecord(serde_json::Error),
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] atomic::WriteError),

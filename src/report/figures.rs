@@ -3,7 +3,7 @@
 use super::ReportError;
 use super::artifact::check_shape;
 use super::asked::Level;
-use super::format::{round_number, significant};
+use super::format::{count, round_number, significant};
 use crate::render::{
     Exposure, Field, LinearRgb, Raster, Scale, View, Visibility, difference, in_standard_errors, luminance,
     luminance_std_err, paint, relative_difference, to_srgb8,
@@ -117,7 +117,8 @@ fn plates(record: &Record) -> Vec<Plate> {
     let wrong = difference(&reference, &solution);
     let relative = relative_difference(&reference, &solution);
     let noise = luminance_std_err(photometry, &record.reference);
-    let z = in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution));
+    let z = tested(record)
+        .unwrap_or_else(|| in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution)));
     let mut all = natural(record, &reference, &areas);
     let scale = Scale::symmetric(&wrong, &areas, 0.0);
     all.push(false_colour("difference", "Signed difference", WRONG, &wrong, scale, WATTS));
@@ -127,9 +128,30 @@ fn plates(record: &Record) -> Vec<Plate> {
         let scale = Scale::from_zero(&noise, &areas);
         all.push(false_colour("std_err", "Standard error of the reference", NOISE, &noise, scale, WATTS));
         let scale = Scale::symmetric(&z, &areas, LEAST_Z);
-        all.push(false_colour("z", "Difference in standard errors", IN_ERRORS, &z, scale, ERRORS));
+        let what = format!("{IN_ERRORS}{}", beyond(record));
+        all.push(false_colour("z", "Difference in standard errors", &what, &z, scale, ERRORS));
     }
     all
+}
+
+/// The scores that were tested, where they are of patches: then picture, histogram and counts agree.
+fn tested(record: &Record) -> Option<Field> {
+    let scores = &record.breakdown.as_ref()?.noise.as_ref()?.scores;
+    let of_patches = Level::of(record) == Level::Patch && scores.len() == record.stage.patch_count();
+    of_patches.then(|| Field { values: scores.clone() })
+}
+
+/// How many lie beyond what chance allows to all of them together.
+fn beyond(record: &Record) -> String {
+    let Some(noise) = record.breakdown.as_ref().and_then(|b| b.noise.as_ref()) else { return String::new() };
+    let (family, nouns) = (&noise.family, Level::of(record).nouns());
+    format!(
+        " {} of {} {nouns} lie beyond {} standard errors, where chance alone would put {}.",
+        count(family.count),
+        count(noise.tested),
+        significant(family.threshold, 3),
+        significant(family.expected, 2)
+    )
 }
 
 /// (unit, what a value is multiplied by for its label).

@@ -44,9 +44,34 @@ pub(super) fn places(numbers: &[f64]) -> Option<usize> {
 
 /// Numbers of one column, all to the same place; `sign` shows a plus.
 pub(super) fn column(numbers: &[f64], places: Option<usize>, sign: bool) -> Vec<String> {
-    let text = |x: f64| places.map_or_else(|| number(x), |p| format!("{x:.p$}"));
-    let plus = |x: f64| if sign && x > 0.0 { "+" } else { "" };
-    numbers.iter().map(|x| format!("{}{}", plus(*x), text(*x))).collect()
+    let text = |x: f64| {
+        let text = places.map_or_else(|| number(x), |p| format!("{x:.p$}"));
+        // What rounds to nothing has no sign.
+        let zero = is_zero(&text);
+        let plain = if zero { text.trim_start_matches('-').to_string() } else { text };
+        if sign && x > 0.0 && !zero { format!("+{plain}") } else { plain }
+    };
+    numbers.iter().map(|x| text(*x)).collect()
+}
+
+/// A standard error to the place of its column; two figures where the column has none.
+pub(super) fn column_error(std_err: f64, places: Option<usize>) -> String {
+    let Some(p) = places else { return significant(std_err, 2) };
+    let text = format!("{std_err:.p$}");
+    if is_zero(&text) && std_err > 0.0 { format!("<{}", round_number(10f64.powi(-(p as i32)))) } else { text }
+}
+
+/// A number with its sign and its standard error, both to the place of two figures of the error.
+pub(super) fn with_error(value: f64, std_err: Option<f64>) -> String {
+    let sign = |text: String| if value > 0.0 && !is_zero(&text) { format!("+{text}") } else { text };
+    match std_err.filter(|e| *e > 0.0).and_then(|e| Some((e, decimals(e)?))) {
+        Some((e, p)) => format!("{} \u{b1} {e:.p$}", sign(column(&[value], Some(p), false).remove(0))),
+        None => sign(significant(value, 3)),
+    }
+}
+
+fn is_zero(text: &str) -> bool {
+    text.chars().all(|c| "-0.".contains(c))
 }
 
 /// A round number (a mark, a limit) without trailing zeros.
@@ -94,7 +119,7 @@ pub(super) fn percent_estimate(e: &Estimate, sign: bool) -> Shown {
     let with_sign = |x: f64| {
         let text = show(100.0 * x);
         // A negative number that rounds to nothing loses its sign.
-        let zero = text.chars().all(|c| "-0.".contains(c));
+        let zero = is_zero(&text);
         let text = if zero { text.trim_start_matches('-').to_string() } else { text };
         if sign && x > 0.0 && !zero { format!("+{text}") } else { text }
     };
@@ -154,6 +179,12 @@ mod tests {
         assert_eq!(shown(&[0.01245, -0.0089987, 0.0], true), ["+0.01245", "-0.00900", "0.00000"]);
         assert_eq!(shown(&[17.25, 0.5], false), ["17.25", "0.50"]);
         assert_eq!(shown(&[3e-9, f64::NAN], false), ["3.00e-9", "NaN"]);
+        assert_eq!(column(&[-0.00004, 0.00004, 1.0], Some(4), true), ["0.0000", "0.0000", "+1.0000"]);
+        assert_eq!([0.0139, 0.000086, 0.0].map(|e| column_error(e, Some(4))), ["0.0139", "0.0001", "0.0000"]);
+        assert_eq!((column_error(0.00004, Some(4)), column_error(0.012345, None)), ("<0.0001".into(), "0.012".into()));
+        assert_eq!(with_error(0.036_91, Some(0.0139)), "+0.037 \u{b1} 0.014");
+        assert_eq!(with_error(-0.000_01, Some(0.02)), "0.000 \u{b1} 0.020");
+        assert_eq!((with_error(-1.5, None), with_error(0.0, Some(0.0))), ("-1.50".into(), "0".into()));
         assert_eq!([0.1 + 0.2, 2e-9, -0.015].map(round_number), ["0.3", "2e-9", "-0.015"]);
         assert_eq!([0, 999, 1000, 12_700_000].map(count), ["0", "999", "1,000", "12,700,000"]);
     }

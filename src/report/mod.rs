@@ -22,7 +22,7 @@ pub use artifact::{Artifact, Exporter, Extras, Phase, ReportError, save};
 pub use figures::{ColourBar, Figure, Mark, ViewFigures, figures};
 pub use headline::{Headline, headline, warnings};
 pub use html::{HtmlReport, PAGE_NAME};
-pub use json::{Json, json_object};
+pub use json::{Json, RECORD_NAME, TIMING_NAME, json_object, read_record, read_timing};
 pub use junit::JUnit;
 pub use layers::exr_layers;
 pub use lines::{MetricLine, WorstLine, metric_lines, worst_lines};

@@ -1,10 +1,12 @@
 //! A real little record for the tests of reports: the room of `render::testing` under direct light.
 
-use crate::metrics::{Comparison, Decision, LimitOutcome, Verdict, WorstPatch};
+use crate::metrics::{Breakdown, Comparison, Decision, Judged, LimitOutcome, Truth, Verdict, WorstPatch, break_down};
 use crate::render::luminance;
 use crate::render::testing::{direct_light, room};
+use crate::scene::{Consequence, Finding, FindingKind, Place, Severity, Stage};
+use crate::solution::{Radiosity, Replicates};
 use crate::stats::Estimate;
-use crate::study::{Record, Setting};
+use crate::study::{Contributions, Part, Record, Setting, Source};
 
 fn estimate(value: f64, half_width: f64) -> Estimate {
     Estimate { value, std_err: Some(half_width / 2.0), low: value - half_width, high: value + half_width }
@@ -39,6 +41,8 @@ pub(crate) fn record() -> Record {
         worst: worst.collect(),
     };
     Record {
+        breakdown: Some(breakdown(&stage, &reference, &solution)),
+        contributions: vec![contributions()],
         stage,
         reference,
         solution,
@@ -47,16 +51,80 @@ pub(crate) fn record() -> Record {
         decision: None,
         truth: "patch-system".into(),
         settings: vec![
-            Setting { name: "--confidence".into(), value: "0.95".into(), is_default: true },
-            Setting { name: "--max-rms".into(), value: "0.05".into(), is_default: false },
+            Setting::new(Part::Judgement, "--confidence", 0.95, 0.95),
+            Setting::new(Part::Judgement, "--max-rms", 0.05, "none"),
+            Setting::given(Part::Reference, "--kernel", "closed form"),
+            Setting::new(Part::Reference, "--rays", 65_536, 16_384),
         ],
         provenance: vec![
             ("Program".into(), "etalon 0.1.0".into()),
             ("Reference".into(), "closed form, direct light only".into()),
         ],
         notices: vec!["surface \"red wall\": a notice of the scene".into()],
-        findings: Vec::new(),
+        findings: vec![finding()],
         replay: "etalon check point-lamps.csv --reference room.ref --max-rms 5%".into(),
+    }
+}
+
+/// The real breakdown against twelve made-up replicates: what is reflected scatters by 0.3 %, each patch in a way of its
+/// own.
+fn breakdown(stage: &Stage, reference: &Radiosity, solution: &Radiosity) -> Breakdown {
+    let scatter = |r: usize, k: usize| 0.003 * ((7 * r * r + 3 * r * (k / 3)) as f64).sin();
+    let emission = stage.emissions();
+    let noisy = |r: usize, k: usize, b: f64| b + (b - emission[k]) * scatter(r, k);
+    let row = |r: usize| reference.values.iter().enumerate().map(|(k, b)| noisy(r, k, *b)).collect();
+    let replicates = Replicates { bands: reference.bands, replicates: (0..12).map(row).collect() };
+    let surfaces: Vec<&str> = (0..stage.patch_count()).map(|i| stage.surface_name(i)).collect();
+    let objects: Vec<&str> = surfaces.iter().map(|s| if s.contains("wall") { "walls" } else { "rest" }).collect();
+    let judged = Judged {
+        areas: &stage.areas(),
+        emission: &emission,
+        surfaces: &surfaces,
+        bands: &stage.photometry.bands,
+        weights: &stage.photometry.weights,
+    };
+    break_down(solution, &Truth::Sampled(replicates), &judged, &objects, 0.95, false).expect("a breakdown")
+}
+
+/// Given, not computed: a patch that two surfaces light.
+fn contributions() -> Contributions {
+    let exact = |value: f64, std_err: f64| Estimate { std_err: Some(std_err), ..estimate(value, 2.0 * std_err) };
+    let source = |name: &str, surfaces, form_factor, light: f64, handed_on: f64| Source {
+        surface: name.into(),
+        surfaces,
+        form_factor,
+        luminance: exact(light, 0.01 * light),
+        share: Some(light / 1.25),
+        handed_on: exact(handed_on, 0.001),
+    };
+    Contributions {
+        receiver: 12,
+        surface: "floor".into(),
+        rays: 65_536,
+        reference: exact(1.2504, 0.002),
+        emission: 0.0,
+        sources: vec![source("lamp", 1, 0.1, 1.0, 0.0), source("red wall", 1, 0.2, 0.2, 0.01)],
+        others: Some(source("", 3, 0.05, 0.05, 0.0)),
+        sum: exact(1.25, 0.002),
+        difference: 0.05,
+        handed_on: exact(0.01, 0.001),
+        own: exact(0.04, 0.002),
+    }
+}
+
+fn finding() -> Finding {
+    Finding {
+        kind: FindingKind::BuriedCentre,
+        severity: Severity::Warning,
+        place: Place { surfaces: vec!["floor".into()], patches: vec![12], ..Place::default() },
+        what: "The middle of patch 12 lies inside the box.".into(),
+        consequence: Some(Consequence {
+            text: "A method that looks from there misses 0.31 of its light.".into(),
+            value: 0.31,
+            std_err: None,
+            unit: "share".into(),
+        }),
+        mend: "Divide the floor along the box.".into(),
     }
 }
 
@@ -76,5 +144,5 @@ pub(crate) fn with_verdict(verdict: Verdict) -> Record {
 /// Gives a setting another value.
 pub(crate) fn set(record: &mut Record, name: &str, value: &str) {
     record.settings.retain(|s| s.name != name);
-    record.settings.push(Setting { name: name.into(), value: value.into(), is_default: false });
+    record.settings.push(Setting::given(Part::Judgement, name, value));
 }

@@ -2,7 +2,9 @@
 
 use crate::io::StoredReference;
 use crate::math::DVec3;
-use crate::metrics::{Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, shared_confidence};
+use crate::metrics::{
+    self, Breakdown, Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, shared_confidence,
+};
 use crate::scene::{Material, NO_FACET, Patch, Region, Stage, StageSurface};
 use crate::solution::Radiosity;
 use crate::view::Photometry;
@@ -16,6 +18,8 @@ pub struct Receivers {
     pub emission: Vec<f64>,
     /// Surface of each.
     pub surfaces: Vec<String>,
+    /// Object of each.
+    pub objects: Vec<String>,
     /// Bands and weights.
     pub photometry: Photometry,
 }
@@ -32,10 +36,12 @@ impl Receivers {
     }
 
     fn of(stage: &Stage, receivers: &[(usize, f64)]) -> Self {
+        let surface = |i: usize| &stage.surfaces[stage.patches[i].surface as usize];
         Self {
             areas: receivers.iter().map(|(_, area)| *area).collect(),
             emission: receivers.iter().flat_map(|(i, _)| stage.emission(*i)).copied().collect(),
-            surfaces: receivers.iter().map(|(i, _)| stage.surface_name(*i).to_string()).collect(),
+            surfaces: receivers.iter().map(|(i, _)| surface(*i).name.clone()).collect(),
+            objects: receivers.iter().map(|(i, _)| surface(*i).object.clone()).collect(),
             photometry: stage.photometry.clone(),
         }
     }
@@ -109,6 +115,13 @@ pub struct Question {
     pub per_element: bool,
 }
 
+impl Question {
+    /// Confidence of each interval.
+    fn shared_confidence(&self) -> f64 {
+        self.limits.map_or(self.confidence, |l| shared_confidence(self.confidence, &l))
+    }
+}
+
 /// The answer.
 #[derive(Debug, Clone)]
 pub struct Judgement {
@@ -143,16 +156,38 @@ pub fn judge(
 ) -> Result<Judgement, JudgeError> {
     let truth = reference.truth(question.per_element)?;
     let before = before.map(|b| b.truth(question.per_element)).transpose()?;
-    let surfaces: Vec<&str> = receivers.surfaces.iter().map(String::as_str).collect();
-    let judged = Judged {
-        areas: &receivers.areas,
-        emission: &receivers.emission,
-        surfaces: &surfaces,
-        bands: &receivers.photometry.bands,
-        weights: &receivers.photometry.weights,
-    };
-    let confidence = question.limits.map_or(question.confidence, |l| shared_confidence(question.confidence, &l));
+    let surfaces = names(&receivers.surfaces);
+    let judged = judged(receivers, &surfaces);
+    let confidence = question.shared_confidence();
     let comparison = compare(solution, &truth, before.as_ref(), &judged, confidence, question.reflected)?;
     let decision = question.limits.map(|l| decide(&comparison, &l));
     Ok(Judgement { comparison, decision })
+}
+
+/// How the error of a solution is spread, for a report; intervals as in [`judge`].
+pub fn break_down(
+    solution: &Radiosity,
+    reference: &Against,
+    receivers: &Receivers,
+    question: &Question,
+) -> Result<Breakdown, JudgeError> {
+    let truth = reference.truth(question.per_element)?;
+    let (surfaces, objects) = (names(&receivers.surfaces), names(&receivers.objects));
+    let judged = judged(receivers, &surfaces);
+    let confidence = question.shared_confidence();
+    Ok(metrics::break_down(solution, &truth, &judged, &objects, confidence, question.reflected)?)
+}
+
+fn names(all: &[String]) -> Vec<&str> {
+    all.iter().map(String::as_str).collect()
+}
+
+fn judged<'a>(receivers: &'a Receivers, surfaces: &'a [&'a str]) -> Judged<'a> {
+    Judged {
+        areas: &receivers.areas,
+        emission: &receivers.emission,
+        surfaces,
+        bands: &receivers.photometry.bands,
+        weights: &receivers.photometry.weights,
+    }
 }

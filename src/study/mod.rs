@@ -1,5 +1,6 @@
 //! Conducts whole runs: reference, solve, check, demo. Hands finished records to reports, which only format.
 
+mod contributions;
 mod judge;
 mod kept;
 mod record;
@@ -7,9 +8,10 @@ mod reuse;
 mod run;
 mod session;
 
-pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, judge};
+pub use contributions::{Contributions, Rows, Source, contributions};
+pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, break_down, judge};
 pub use kept::KeptWork;
-pub use record::{Record, Setting};
+pub use record::{Part, Record, Setting};
 pub use reuse::falls_short;
 pub use run::{SolveOutcome, SolveRequest, reference, reference_on, solve};
 pub use session::Session;

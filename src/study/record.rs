@@ -1,47 +1,83 @@
 //! The finished record of a comparison: all a report needs, nothing left to compute.
 
-use crate::metrics::{Comparison, Decision};
+use super::Contributions;
+use crate::metrics::{Breakdown, Comparison, Decision};
 use crate::scene::{Finding, Stage};
 use crate::solution::Radiosity;
 use serde::{Deserialize, Serialize};
 
-/// A finished comparison or check.
+/// A finished comparison or check. What is short comes first: so it is stored.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
-    /// Scene at the judged state.
-    pub stage: Stage,
-    /// Mean of the reference with its standard errors, per patch.
-    pub reference: Radiosity,
-    /// The solution that was judged, per patch.
-    pub solution: Radiosity,
     /// What the solution is called: a file name, or the method with its parameters.
     pub solution_name: String,
-    /// The metrics.
-    pub comparison: Comparison,
+    /// Which truth: `patch-system`, `continuous`, or `solution` where another solution stands for it.
+    pub truth: String,
     /// The verdict; `None` when no limit was given.
     pub decision: Option<Decision>,
-    /// Which truth: `patch-system` or `continuous`.
-    pub truth: String,
+    /// The metrics.
+    pub comparison: Comparison,
+    /// How the error is spread; `None` where no report was asked for.
+    pub breakdown: Option<Breakdown>,
+    /// What lights the worst patches; empty where no rays can be cast: against another solution, without a scene.
+    pub contributions: Vec<Contributions>,
+    /// What the scene doctor found.
+    #[serde(default)]
+    pub findings: Vec<Finding>,
+    /// Things the reader has to know: self-check findings, notices of the scene.
+    pub notices: Vec<String>,
     /// Effective settings.
     pub settings: Vec<Setting>,
     /// Where everything comes from: (what, value), in order of display.
     pub provenance: Vec<(String, String)>,
-    /// Things the reader has to know: self-check findings, notices of the scene.
-    pub notices: Vec<String>,
-    /// What the scene doctor found.
-    #[serde(default)]
-    pub findings: Vec<Finding>,
     /// The command that repeats this run.
     pub replay: String,
+    /// Mean of the reference with its standard errors, per patch.
+    pub reference: Radiosity,
+    /// The solution that was judged, per patch.
+    pub solution: Radiosity,
+    /// Scene at the judged state.
+    pub stage: Stage,
+}
+
+/// Whose setting it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Part {
+    /// Of the judgement.
+    Judgement,
+    /// Of the reference.
+    Reference,
+    /// Of the solution.
+    Solution,
 }
 
 /// One effective setting.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setting {
+    /// Whose.
+    pub of: Part,
     /// Name as on the command line.
     pub name: String,
     /// Value in force.
     pub value: String,
-    /// True if it is the default.
-    pub is_default: bool,
+    /// Value without being asked for; `None` for what has none and must be given.
+    pub default: Option<String>,
+}
+
+impl Setting {
+    /// A setting that has a default.
+    pub fn new(of: Part, name: &str, value: impl ToString, default: impl ToString) -> Self {
+        Self { of, name: name.into(), value: value.to_string(), default: Some(default.to_string()) }
+    }
+
+    /// A setting that has none.
+    pub fn given(of: Part, name: &str, value: impl ToString) -> Self {
+        Self { of, name: name.into(), value: value.to_string(), default: None }
+    }
+
+    /// True if it has a default and another value.
+    pub fn differs(&self) -> bool {
+        self.default.as_ref().is_some_and(|d| *d != self.value)
+    }
 }

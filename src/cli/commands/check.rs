@@ -1,25 +1,29 @@
 //! `etalon compare` and `etalon check`
 
-use super::inputs;
-use super::report::write_report;
+use super::report::{Stopwatch, write_report};
+use super::{inputs, told};
 use crate::cli::args::{CheckArgs, CompareArgs, Kernel, OnInconclusive, Truth};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
 use crate::io::{SolutionFile, StoredReference, atomic, is_reference, read_solution};
 use crate::metrics::{Decision, Limits, Verdict};
-use crate::raycast::KernelKind;
 use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, text_summary};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
-use crate::study::{Against, Question, Receivers, Record, Setting, anonymous_stage, judge};
+use crate::study::{
+    self, Against, Contributions, Question, Receivers, Record, Rows, Session, anonymous_stage, break_down, judge,
+};
 use crate::view::{Photometry, Primaries};
 use std::io::IsTerminal;
 use std::path::Path;
 
+/// So many of the worst patches are explained by what lights them.
+const EXPLAINED: usize = 5;
+
 /// `etalon compare`: metrics, no verdict.
 pub fn compare(args: &CompareArgs, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
-    let record = run(args, None, inputs::kernel_kind(kernel), console)?;
+    let record = run(&Asked { args, limits: None, on_inconclusive: None, kernel }, console)?;
     show(&record, console)?;
     Ok(exit::DONE)
 }
@@ -28,7 +32,8 @@ pub fn compare(args: &CompareArgs, kernel: Kernel, console: &Console) -> Result<
 pub fn check(args: &CheckArgs, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
     let limits = limits(args)?;
     args.junit.as_deref().map(inputs::check_writable).transpose()?;
-    let record = run(&args.compare, Some(limits), inputs::kernel_kind(kernel), console)?;
+    let asked = Asked { args: &args.compare, limits: Some(limits), on_inconclusive: args.on_inconclusive, kernel };
+    let record = run(&asked, console)?;
     if let Some(path) = &args.junit {
         write_only(path, &JUnit, &record)?;
     }
@@ -104,8 +109,18 @@ impl Input {
     }
 }
 
+/// What was asked for, checked.
+pub struct Asked<'a> {
+    pub args: &'a CompareArgs,
+    pub limits: Option<Limits>,
+    pub on_inconclusive: Option<OnInconclusive>,
+    pub kernel: Kernel,
+}
+
 /// Reads everything, judges, and writes the files asked for.
-fn run(args: &CompareArgs, limits: Option<Limits>, kernel: KernelKind, console: &Console) -> Result<Record, Failure> {
+fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
+    let (args, limits) = (asked.args, asked.limits);
+    let mut watch = Stopwatch::start();
     args.markdown.as_deref().map(inputs::check_writable).transpose()?;
     args.report.as_deref().map(atomic::check_folder).transpose()?;
     if !(0.0..1.0).contains(&args.confidence.0) || args.confidence.0 == 0.0 {
@@ -122,33 +137,63 @@ fn run(args: &CompareArgs, limits: Option<Limits>, kernel: KernelKind, console: 
         Input::Solution(s) => Against::Solution(s.fit(&receivers.photometry.bands, &receivers.present())?),
     };
     let before = args.before.as_deref().map(|path| before(path, &receivers, limits.is_some())).transpose()?;
-    let confidence = args.confidence.0;
-    let question = Question { limits, confidence, reflected: args.reflected, per_element };
+    watch.lap("reading");
+    let question = Question { limits, confidence: args.confidence.0, reflected: args.reflected, per_element };
     let judgement = judge(&solution, &against, before.as_ref(), &receivers, &question)?;
-    let record = Record {
-        reference: patch_means(&against, &stage, per_element),
-        solution: if per_element { by_patch(&solution, &stage) } else { solution },
+    let by_patch = if per_element { by_patch(&solution, &stage) } else { solution.clone() };
+    let mut record = Record {
         solution_name: args.solution.display().to_string(),
-        comparison: judgement.comparison,
-        decision: judgement.decision,
         truth,
-        settings: settings(args, limits.as_ref()),
-        provenance: provenance(&against, &stage),
-        notices: notices(args, &against),
-        findings: match &against {
-            Against::Reference(r) => r.findings.clone(),
-            Against::Solution(_) => Vec::new(),
-        },
-        replay: replay(args, limits.as_ref()),
+        decision: judgement.decision,
+        comparison: judgement.comparison,
+        breakdown: None,
+        contributions: Vec::new(),
+        findings: told::findings(&against),
+        notices: told::notices(args, &against),
+        settings: told::settings(asked, &against),
+        provenance: told::provenance(&against, &stage),
+        replay: told::replay(asked),
+        reference: patch_means(&against, &stage, per_element),
+        solution: by_patch,
         stage,
     };
+    watch.lap("judging");
     if let Some(path) = &args.markdown {
         write_only(path, &Markdown, &record)?;
     }
     if let Some(folder) = &args.report {
-        write_report(folder, &record, kernel, console)?;
+        let stage = record.stage.clone();
+        let session = open(&stage, asked.kernel, console)?;
+        record.breakdown = Some(break_down(&solution, &against, &receivers, &question)?);
+        record.contributions = explain(session.as_ref(), &record, &against, &solution, per_element);
+        watch.lap("casting the rows of the worst again");
+        write_report(folder, &record, session.as_ref(), watch)?;
     }
     Ok(record)
+}
+
+/// Kernels on the judged scene; `None` where there is no geometry.
+pub fn open<'a>(stage: &'a Stage, kernel: Kernel, console: &Console) -> Result<Option<Session<'a>>, Failure> {
+    let session = || inputs::session(stage, inputs::kernel_kind(kernel), console);
+    (!stage.facets.is_empty()).then(session).transpose()
+}
+
+/// What lights the worst, where there are rays to be cast for it.
+pub fn explain(
+    session: Option<&Session>,
+    record: &Record,
+    against: &Against,
+    solution: &Radiosity,
+    elements: bool,
+) -> Vec<Contributions> {
+    let (Some(session), Against::Reference(reference)) = (session, against) else { return Vec::new() };
+    if reference.provenance.truth != TruthLevel::PatchSystem {
+        return Vec::new();
+    }
+    let worst: Vec<usize> = record.comparison.worst.iter().take(EXPLAINED).map(|w| w.patch).collect();
+    let confidence = record.comparison.confidence;
+    let rows = Rows { receivers: &worst, elements, solution, sources: &record.solution, confidence };
+    study::contributions(session, reference, &rows)
 }
 
 /// The truth the reference holds, by name; refuses another one being asked for.
@@ -266,87 +311,4 @@ fn by_patch(elements: &Radiosity, stage: &Stage) -> Radiosity {
         }
     }
     Radiosity { bands: elements.bands, values, std_err: None }
-}
-
-pub fn provenance(against: &Against, stage: &Stage) -> Vec<(String, String)> {
-    let mut out = vec![
-        ("scene".to_string(), stage.name.clone()),
-        ("scene hash".to_string(), if stage.facets.is_empty() { "(none)".into() } else { stage.hash() }),
-    ];
-    if let Against::Reference(r) = against {
-        let p = &r.provenance;
-        let rays = inputs::thousands(p.rays_per_patch);
-        out.push(("rays per patch".into(), format!("{rays} in {} independent randomisations", p.randomisations)));
-        out.push(("rays in all".into(), inputs::thousands(p.rays)));
-        out.push(("ray kernel".into(), format!("{} {}", p.kernel, p.kernel_version)));
-        out.push(("seed".into(), p.seed.to_string()));
-        out.push(("computed by".into(), format!("etalon {}", p.version)));
-        for c in &r.self_check.checks {
-            out.push((format!("self-check: {}", c.name), c.finding.clone()));
-        }
-    }
-    out
-}
-
-fn notices(args: &CompareArgs, against: &Against) -> Vec<String> {
-    let mut out = Vec::new();
-    match against {
-        Against::Solution(_) if args.scene.is_none() => {
-            out.push("no scene given: every patch weighs alike; --scene SCENE brings areas and photometry".into());
-        }
-        Against::Solution(_) => {}
-        Against::Reference(r) => {
-            for c in r.self_check.failures() {
-                out.push(format!("the reference failed its self-check of {}: {}", c.name, c.finding));
-            }
-        }
-    }
-    out
-}
-
-fn settings(args: &CompareArgs, limits: Option<&Limits>) -> Vec<Setting> {
-    let setting = |name: &str, value: String, is_default: bool| Setting { name: name.into(), value, is_default };
-    let mut out = vec![
-        setting("--confidence", args.confidence.0.to_string(), args.confidence.0 == 0.95),
-        setting(
-            "--per",
-            if args.per == PerLevel::Element { "element" } else { "patch" }.into(),
-            args.per == PerLevel::Patch,
-        ),
-        setting("--reflected", args.reflected.to_string(), !args.reflected),
-    ];
-    for (name, limit) in
-        [("--max-rms", limits.and_then(|l| l.max_rms)), ("--max-top1", limits.and_then(|l| l.max_top1))]
-    {
-        out.extend(limit.map(|l| setting(name, l.to_string(), false)));
-    }
-    out
-}
-
-/// The command that repeats the run.
-fn replay(args: &CompareArgs, limits: Option<&Limits>) -> String {
-    let mut words = vec!["etalon".to_string(), if limits.is_some() { "check" } else { "compare" }.into()];
-    words.push(quoted(&args.solution.display().to_string()));
-    let mut option = |name: &str, value: Option<String>| {
-        if let Some(v) = value {
-            words.push(format!("{name} {}", quoted(&v)));
-        }
-    };
-    option("--reference", Some(args.reference.display().to_string()));
-    option("--before", args.before.as_ref().map(|p| p.display().to_string()));
-    option("--scene", args.scene.clone());
-    option("--max-rms", limits.and_then(|l| l.max_rms).map(|x| x.to_string()));
-    option("--max-top1", limits.and_then(|l| l.max_top1).map(|x| x.to_string()));
-    option("--confidence", (args.confidence.0 != 0.95).then(|| args.confidence.0.to_string()));
-    option("--per", (args.per == PerLevel::Element).then(|| "element".to_string()));
-    if args.reflected {
-        words.push("--reflected".into());
-    }
-    words.join(" ")
-}
-
-/// A word a shell takes as one.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:%=,".contains(c);
-    if word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }

@@ -1,8 +1,9 @@
 //! `etalon demo`: the whole chain on the Cornell box.
 
-use super::inputs;
+use super::check::explain;
 use super::reference::{MARKER, explain_failures};
-use super::report::write_report;
+use super::report::{Stopwatch, write_report};
+use super::{inputs, told};
 use crate::cli::args::Kernel;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
@@ -13,7 +14,9 @@ use crate::methods::Method;
 use crate::metrics::{Limits, Verdict};
 use crate::reference::Options;
 use crate::report::text_summary;
-use crate::study::{self, Against, Question, Receivers, Record, Setting, SolveRequest, judge};
+use crate::scene::Stage;
+use crate::solution::Provenance;
+use crate::study::{self, Against, Part, Question, Receivers, Record, Setting, SolveRequest, break_down, judge};
 use serde_json::json;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -28,15 +31,19 @@ const RAYS: u64 = 65_536;
 
 pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
     let begin = Instant::now();
+    let mut watch = Stopwatch::start();
     let kind = inputs::kernel_kind(kernel);
     atomic::create_folder(output)?;
-    let stage = inputs::stage_of(&inputs::scene(SCENE, None, console)?, StateChoice::Final)?;
+    let scene = inputs::scene(SCENE, None, console)?;
+    let stage = inputs::stage_of(&scene, StateChoice::Final)?;
     let session = inputs::session(&stage, kind, console)?;
     let options = Options { plan: Plan { rays: RAYS, ..Plan::default() }, seed: 0 };
-    let (stored, _) = study::reference(&session, &options, console)?;
+    let (mut stored, _) = study::reference(&session, &options, console)?;
+    stored.findings = inputs::findings(&scene, &stage, console)?;
     let judged_in = begin.elapsed().as_secs_f64();
     write_folder(&output.join("reference"), &stored.files(judged_in), MARKER)?;
     explain_failures(&stored, console);
+    watch.lap("computing the reference");
 
     let method: Method = METHOD.parse()?;
     let request = SolveRequest { method, form_factors: None, seed: 0, per_element: false };
@@ -47,28 +54,35 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
     let names = BandNames { scene: &stage.name, scene_hash: &hash, bands: &stage.photometry.bands, present: &present };
     let solution = output.join("hemicube.csv");
     inputs::write(&solution, &write_solution(&outcome.radiosity, names, SolutionFormat::Csv))?;
+    watch.lap("hemi-cubes");
 
     let limits = Limits { max_rms: Some(MAX_RMS), max_top1: None };
-    let question = Question { limits: Some(limits), confidence: 0.95, reflected: true, per_element: false };
+    let question = Question { limits: Some(limits), confidence: told::CONFIDENCE, reflected: true, per_element: false };
     let against = Against::Reference(Box::new(stored));
     let judgement = judge(&outcome.radiosity, &against, None, &receivers, &question)?;
     let verdict = judgement.decision.as_ref().map(|d| d.verdict);
-    let Against::Reference(stored) = against else { unreachable!("made three lines above") };
-    let record = Record {
-        reference: stored.patches.mean(),
-        solution: outcome.radiosity,
+    let breakdown = break_down(&outcome.radiosity, &against, &receivers, &question)?;
+    let Against::Reference(stored) = &against else { unreachable!("made five lines above") };
+    let mut record = Record {
         solution_name: method.to_string(),
-        comparison: judgement.comparison,
-        decision: judgement.decision,
         truth: stored.provenance.truth.name().into(),
-        settings: settings(&options, &method),
-        provenance: super::check::provenance(&Against::Reference(stored), &stage),
+        decision: judgement.decision,
+        comparison: judgement.comparison,
+        breakdown: Some(breakdown),
+        contributions: Vec::new(),
+        findings: told::findings(&against),
         notices: Vec::new(),
-        findings: Vec::new(),
+        settings: settings(&method, kernel, &stored.provenance, &stage),
+        provenance: told::provenance(&against, &stage),
         replay: replay(output),
+        reference: stored.patches.mean(),
+        solution: outcome.radiosity.clone(),
         stage: stage.clone(),
     };
-    let page = write_report(output, &record, kind, console)?;
+    watch.lap("judging");
+    record.contributions = explain(Some(&session), &record, &against, &outcome.radiosity, false);
+    watch.lap("casting the rows of the worst again");
+    let page = write_report(output, &record, Some(&session), watch)?;
     let seconds = begin.elapsed().as_secs_f64();
     let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let text = format!(
@@ -84,18 +98,17 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
     Ok(exit::DONE)
 }
 
-fn settings(options: &Options, method: &Method) -> Vec<Setting> {
-    let setting = |name: &str, value: String, is_default: bool| Setting { name: name.into(), value, is_default };
-    vec![
-        setting("scene", SCENE.into(), true),
-        setting("--method", method.to_string(), true),
-        setting("--rays", options.plan.rays.to_string(), false),
-        setting("--randomisations", options.plan.randomisations.to_string(), true),
-        setting("--seed", options.seed.to_string(), true),
-        setting("--max-rms", MAX_RMS.to_string(), false),
-        setting("--reflected", "true".into(), false),
-        setting("--confidence", "0.95".into(), true),
-    ]
+fn settings(method: &Method, kernel: Kernel, reference: &Provenance, stage: &Stage) -> Vec<Setting> {
+    let mut out = vec![
+        Setting::new(Part::Judgement, "--max-rms", MAX_RMS, "none"),
+        Setting::new(Part::Judgement, "--confidence", told::CONFIDENCE, told::CONFIDENCE),
+        Setting::new(Part::Judgement, "--reflected", true, false),
+        Setting::new(Part::Judgement, "--kernel", told::kernel(kernel), told::kernel(Kernel::Auto)),
+        Setting::given(Part::Solution, "--method", method),
+        Setting::new(Part::Solution, "--seed", 0, 0),
+    ];
+    out.extend(told::of_reference(reference, stage));
+    out
 }
 
 fn replay(output: &Path) -> String {

@@ -4,11 +4,12 @@ use crate::cli::args::{Kernel, RayArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::exit::Failure;
 use crate::cli::values::StateChoice;
+use crate::doctor;
 use crate::estimate::Plan;
 use crate::io::atomic;
 use crate::io::scene::{SceneOptions, open_scene};
 use crate::raycast::KernelKind;
-use crate::scene::{Scene, Stage};
+use crate::scene::{Finding, FindingKind, Scene, Severity, Stage};
 use crate::study::Session;
 use std::path::Path;
 
@@ -41,6 +42,20 @@ pub fn open(spec: &str, max_edge: Option<f64>) -> Result<Scene, Failure> {
         return Err(Failure::input("--max-edge must be a length above 0, in metres"));
     }
     Ok(open_scene(spec, &SceneOptions { max_edge_override: max_edge })?)
+}
+
+/// What the scene doctor finds; says on stderr how many findings are grave.
+pub fn findings(scene: &Scene, stage: &Stage, console: &Console) -> Result<Vec<Finding>, Failure> {
+    let findings = doctor::examine(scene, stage)?;
+    let told = |f: &&Finding| f.severity > Severity::Note && f.kind != FindingKind::Import;
+    let mut kinds: Vec<&str> = findings.iter().filter(told).map(|f| f.kind.name()).collect();
+    let count = kinds.len();
+    kinds.dedup();
+    if count > 0 {
+        let kinds = kinds.join(", ");
+        console.notice(&format!("the scene doctor has {count} grave findings ({kinds}); see `etalon scene check`"));
+    }
+    Ok(findings)
 }
 
 /// Lays out a state.

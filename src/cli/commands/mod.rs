@@ -10,6 +10,7 @@ mod render;
 mod report;
 mod scene;
 mod solve;
+mod told;
 
 use super::args::{Cli, Command};
 use super::console::Console;
@@ -26,7 +27,7 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Compare(args) => check::compare(args, cli.global.kernel, console),
         Command::Check(args) => check::check(args, cli.global.kernel, console),
         Command::Render(args) => render::run(args, kernel, console),
-        Command::Report { directory } => report::run(directory, kernel, console),
+        Command::Report { directory } => report::run(directory, cli.global.kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),
         Command::Setup(command) => machine::setup(command, console),
         Command::Doctor => machine::doctor(console),

@@ -27,7 +27,8 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     }
     let begin = Instant::now();
     let options = Options { plan: inputs::plan(&args.rays)?, seed: args.rays.seed };
-    let stage = inputs::stage(&args.scene, console)?;
+    let scene = inputs::scene(&args.scene.scene, args.scene.max_edge, console)?;
+    let stage = inputs::stage_of(&scene, args.scene.state)?;
     if let Some(stored) = already_there(args, &stage, &options, kernel, console)? {
         let text = text(&stored, &args.output, "is already there in");
         console.result(&text, &summary(&stored, begin.elapsed().as_secs_f64(), true));
@@ -37,7 +38,8 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     let session = inputs::session(&stage, kernel, console)?;
     let work = open_work(&claim, &session, &options, console)?;
     let armed = arm(&work);
-    let (stored, reference) = study::reference_on(&session, &options, console, work.kept())?;
+    let (mut stored, reference) = study::reference_on(&session, &options, console, work.kept())?;
+    stored.findings = inputs::findings(&scene, &stage, console)?;
     console.end();
     let seconds = begin.elapsed().as_secs_f64();
     // Should the result find no room, the work is not lost.

@@ -1,59 +1,84 @@
 //! `etalon report`, and writing a report folder.
 
-use super::inputs;
+use super::check::open;
+use crate::cli::args::Kernel;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::io::FileError;
-use crate::raycast::KernelKind;
 use crate::render::views;
-use crate::report::{Exporter, Extras, HtmlReport, PAGE_NAME, save};
-use crate::study::Record;
-use serde::{Deserialize, Serialize};
+use crate::report::{
+    Exporter, Extras, HtmlReport, PAGE_NAME, Phase, RECORD_NAME, TIMING_NAME, read_record, read_timing, save,
+};
+use crate::study::{Record, Session};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-/// The finished record, from which the page can be made again.
-const RUN: &str = "run.json";
-/// Its format.
-const FORMAT: &str = "etalon-run/1";
-
-#[derive(Serialize, Deserialize)]
-struct Run<R> {
-    format: String,
-    record: R,
+/// Times the phases of a run, one after the other.
+pub struct Stopwatch {
+    since: Instant,
+    phases: Vec<Phase>,
 }
 
-/// `etalon report DIR`: makes the page of a finished run again.
-pub fn run(folder: &Path, kernel: KernelKind, console: &Console) -> Result<u8, Failure> {
-    let path = folder.join(RUN);
+impl Stopwatch {
+    /// Starts with the first phase.
+    pub fn start() -> Self {
+        Self { since: Instant::now(), phases: Vec::new() }
+    }
+
+    /// The phase that ends here; the next one begins.
+    pub fn lap(&mut self, name: &str) {
+        self.phases.push(Phase { name: name.into(), seconds: self.since.elapsed().as_secs_f64() });
+        self.since = Instant::now();
+    }
+}
+
+/// `etalon report DIR`: makes the page of a finished run again, the same to the byte.
+pub fn run(folder: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
+    let path = folder.join(RECORD_NAME);
     let bytes = std::fs::read(&path).map_err(|e| {
         FileError::system(&path, "read", &e).mend("DIR is a folder that check --report, compare --report or demo wrote")
     })?;
-    let run: Run<Record> = serde_json::from_slice(&bytes)
-        .map_err(|e| FileError::new(&path, format!("is not a finished run: {e}")).at(format!("line {}", e.line())))?;
-    if run.format != FORMAT {
-        return Err(FileError::new(&path, format!("has format {}", run.format))
-            .mend(format!("this version reads {FORMAT}"))
-            .into());
-    }
-    let page = write_report(folder, &run.record, kernel, console)?;
+    let record = read_record(&bytes).map_err(|e| {
+        FileError::new(&path, e.to_string())
+            .mend("it is damaged, or another version wrote it: run `etalon check --report` again")
+    })?;
+    let timing = timing(&folder.join(TIMING_NAME))?;
+    let session = open(&record.stage, kernel, console)?;
+    let page = write(folder, &record, session.as_ref(), |_| timing)?;
     console.result(&page.display().to_string(), &json!({ "report": page }));
     Ok(exit::DONE)
 }
 
+/// The clock of the run, where the folder keeps it.
+fn timing(path: &Path) -> Result<Vec<Phase>, Failure> {
+    let Ok(bytes) = std::fs::read(path) else { return Ok(Vec::new()) };
+    read_timing(&bytes).map_err(|e| FileError::new(path, e.to_string()).mend("delete it: only times are lost").into())
+}
+
 /// Writes the report folder of a record; returns the page's path.
-pub fn write_report(folder: &Path, record: &Record, kernel: KernelKind, console: &Console) -> Result<PathBuf, Failure> {
-    // A comparison without a scene has no geometry to show.
-    let seen = if record.stage.facets.is_empty() {
-        Vec::new()
-    } else {
-        views(&inputs::session(&record.stage, kernel, console)?.tracer())
-    };
-    let artifacts = HtmlReport.export(record, &Extras { views: &seen, timing: &[] })?;
+pub fn write_report(
+    folder: &Path,
+    record: &Record,
+    session: Option<&Session>,
+    mut watch: Stopwatch,
+) -> Result<PathBuf, Failure> {
+    write(folder, record, session, |what| {
+        watch.lap(what);
+        watch.phases
+    })
+}
+
+/// A comparison without a scene has no geometry to show, hence no session.
+fn write(
+    folder: &Path,
+    record: &Record,
+    session: Option<&Session>,
+    timing: impl FnOnce(&str) -> Vec<Phase>,
+) -> Result<PathBuf, Failure> {
+    let seen = session.map_or(Vec::new(), |s| views(&s.tracer()));
+    let timing = timing("casting the pictures");
+    let artifacts = HtmlReport.export(record, &Extras { views: &seen, timing: &timing })?;
     save(folder, &artifacts)?;
-    let run = Run { format: FORMAT.into(), record };
-    let mut bytes = serde_json::to_vec(&run).map_err(|e| Failure::input(e.to_string()))?;
-    bytes.push(b'\n');
-    inputs::write(&folder.join(RUN), &bytes)?;
     Ok(folder.join(PAGE_NAME))
 }

@@ -1,12 +1,18 @@
-//! Everything the page says, as ready strings: what the template gets, and what `record.json` keeps.
+//! Everything the page says, as ready strings: what the template gets.
 
 use super::bars::{Bar, axis_end, bar};
+use super::charts::{Chart, charts};
+use super::findings::{FindingRow, finding_rows};
+use super::groups::{GroupTable, group_tables};
+use super::pictures::{ViewBlock, view_block};
+use super::settings::{SettingGroup, settings};
+use super::sources::{Card, cards};
 use crate::metrics::Verdict;
 use crate::report::asked::Level;
-use crate::report::figures::{Figure, ViewFigures};
-use crate::report::format::{confidence, count, round_number, significant};
+use crate::report::figures::ViewFigures;
+use crate::report::format::{confidence, count, significant};
 use crate::report::lines::worst_title;
-use crate::report::{ColourBar, Mark, MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
+use crate::report::{MetricLine, Phase, headline, metric_lines, warnings, worst_lines};
 use crate::study::Record;
 use serde::Serialize;
 
@@ -16,15 +22,20 @@ pub(super) struct Page {
     pub scene: String,
     pub state: Option<String>,
     pub solution: String,
+    pub against: &'static str,
     pub verdict: VerdictBand,
     pub facts: Vec<Pair>,
     pub warnings: Vec<Pair>,
     pub metrics: Metrics,
     pub views: Vec<ViewBlock>,
     pub worst: Worst,
-    pub settings: Vec<SettingRow>,
-    pub provenance: Vec<Pair>,
+    pub groups: Vec<GroupTable>,
+    pub charts: Vec<Chart>,
+    pub sources: Vec<Card>,
+    pub findings: Vec<FindingRow>,
     pub notices: Vec<String>,
+    pub settings: Vec<SettingGroup>,
+    pub provenance: Vec<Pair>,
     pub replay: String,
     /// Wall-clock data: the only part that differs between runs on the same input.
     pub timing: Vec<Pair>,
@@ -68,48 +79,6 @@ pub(super) struct MetricRow {
 }
 
 #[derive(Debug, Serialize)]
-pub(super) struct ViewBlock {
-    pub title: String,
-    pub fitted: bool,
-    pub exr: String,
-    pub figures: Vec<FigureBlock>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct FigureBlock {
-    pub id: String,
-    pub kind: &'static str,
-    pub title: &'static str,
-    pub caption: String,
-    pub alt: String,
-    /// Name of the picture in the report's folder.
-    pub file: String,
-    pub width: u32,
-    pub height: u32,
-    pub bar: Option<BarBlock>,
-    pub marks: Vec<MarkBlock>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct BarBlock {
-    pub stops: Vec<(String, String)>,
-    pub ticks: Vec<(String, String)>,
-    pub unit: &'static str,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct MarkBlock {
-    pub rank: usize,
-    pub number: usize,
-    pub x: String,
-    pub y: String,
-    pub radius: String,
-    pub font: String,
-    /// False where a worse patch is so near that two labels would cover each other: a dot has to do.
-    pub labelled: bool,
-}
-
-#[derive(Debug, Serialize)]
 pub(super) struct Worst {
     pub title: String,
     pub noun: &'static str,
@@ -131,18 +100,6 @@ pub(super) struct WorstRow {
     pub hidden: bool,
 }
 
-#[derive(Debug, Serialize)]
-pub(super) struct SettingRow {
-    pub name: String,
-    pub value: String,
-    pub changed: bool,
-}
-
-/// Name of a picture in the report's folder.
-pub(super) fn picture_name(stem: &str, kind: &str) -> String {
-    format!("{stem}-{kind}.png")
-}
-
 fn pair(label: &str, text: impl Into<String>) -> Pair {
     Pair { label: label.into(), text: text.into() }
 }
@@ -155,15 +112,20 @@ impl Page {
             scene: record.stage.name.clone(),
             state: (record.stage.state > 0).then(|| format!("after edit {}", record.stage.state)),
             solution: record.solution_name.clone(),
+            against: if record.truth == "solution" { "against another solution" } else { "judged by ray casting" },
             verdict: VerdictBand { class: class(head.verdict), word: head.word, sentence: minus(&head.sentence) },
             facts: facts(record),
             warnings: warnings(record).into_iter().map(|(label, text)| Pair { label, text: minus(&text) }).collect(),
             metrics: metrics(record),
             views: views.iter().map(view_block).collect(),
             worst: worst(record, views),
-            settings: record.settings.iter().map(setting).collect(),
-            provenance: record.provenance.iter().map(|(what, value)| pair(what, value)).collect(),
+            groups: group_tables(record),
+            charts: charts(record),
+            sources: cards(record),
+            findings: finding_rows(record),
             notices: record.notices.clone(),
+            settings: settings(record),
+            provenance: record.provenance.iter().map(|(what, value)| pair(what, value)).collect(),
             replay: record.replay.clone(),
             timing: timing.iter().map(|p| pair(&p.name, format!("{} s", significant(p.seconds, 3)))).collect(),
             program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
@@ -224,63 +186,6 @@ fn metric_row(line: MetricLine, end: Option<f64>) -> MetricRow {
     }
 }
 
-fn view_block(view: &ViewFigures) -> ViewBlock {
-    ViewBlock {
-        title: view.camera.clone(),
-        fitted: view.fitted,
-        exr: format!("{}.exr", view.stem),
-        figures: view.figures.iter().map(|f| figure_block(view, f)).collect(),
-    }
-}
-
-fn figure_block(view: &ViewFigures, figure: &Figure) -> FigureBlock {
-    FigureBlock {
-        id: format!("{}-{}", view.stem, figure.kind),
-        kind: figure.kind,
-        title: figure.title,
-        caption: figure.caption.clone(),
-        alt: format!("{} seen by camera {}", figure.title, view.camera),
-        file: picture_name(&view.stem, figure.kind),
-        width: figure.raster.width,
-        height: figure.raster.height,
-        bar: figure.bar.as_ref().map(bar_block),
-        // One picture with numbers is enough; the others are to be looked at.
-        marks: if figure.kind == "difference" { mark_blocks(view, figure.raster.width) } else { Vec::new() },
-    }
-}
-
-/// Labels sized to the picture, worst first.
-fn mark_blocks(view: &ViewFigures, width: u32) -> Vec<MarkBlock> {
-    let radius = f64::from(width) / 72.0;
-    let mut kept: Vec<(f64, f64)> = Vec::new();
-    let mut block = |m: &Mark| {
-        let free = kept.iter().all(|(x, y)| (x - m.x).hypot(y - m.y) > 2.0 * radius);
-        if free {
-            kept.push((m.x, m.y));
-        }
-        MarkBlock {
-            rank: m.rank,
-            number: m.number,
-            x: format!("{:.1}", m.x),
-            y: format!("{:.1}", m.y),
-            radius: format!("{:.1}", if free { radius } else { 0.35 * radius }),
-            font: format!("{:.1}", 1.2 * radius),
-            labelled: free,
-        }
-    };
-    view.marks.iter().map(&mut block).collect()
-}
-
-fn bar_block(bar: &ColourBar) -> BarBlock {
-    let last = bar.colours.len().max(2) - 1;
-    let stop = |(k, colour): (usize, &String)| (round_number(100.0 * k as f64 / last as f64), colour.clone());
-    BarBlock {
-        stops: bar.colours.iter().enumerate().map(stop).collect(),
-        ticks: bar.ticks.iter().map(|(at, label)| (at.clone(), minus(label))).collect(),
-        unit: bar.unit,
-    }
-}
-
 fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
     let in_sight = |number| views.iter().any(|v| v.marks.iter().any(|m| m.number == number));
     let row = |(k, w): (usize, crate::report::WorstLine)| WorstRow {
@@ -299,17 +204,13 @@ fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
     Worst { title, noun, any_hidden: rows.iter().any(|r| r.hidden), rows }
 }
 
-fn setting(s: &crate::study::Setting) -> SettingRow {
-    SettingRow { name: s.name.clone(), value: s.value.clone(), changed: !s.is_default }
-}
-
 /// A true minus sign before numbers, and narrow no-break spaces before per cent signs.
-fn minus(text: &str) -> String {
+pub(super) fn minus(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut chars = text.chars().peekable();
     let mut before = ' ';
     while let Some(c) = chars.next() {
-        let sign = c == '-' && matches!(before, ' ' | '(') && chars.peek().is_some_and(char::is_ascii_digit);
+        let sign = c == '-' && matches!(before, ' ' | '(' | '\u{b1}') && chars.peek().is_some_and(char::is_ascii_digit);
         let unit = c == ' ' && before.is_ascii_digit() && chars.peek() == Some(&'%');
         out.push(if sign {
             '\u{2212}'

@@ -1,27 +1,42 @@
 //! One self-contained page: no network, no fonts, nothing but the file.
 
 mod bars;
+mod charts;
 mod context;
+mod findings;
+mod groups;
+mod pictures;
+mod settings;
+mod sources;
 
 use super::artifact::check_shape;
 use super::figures::{ViewFigures, figures};
+use super::json::{record_file, timing_file};
 use super::layers::exr_layers;
-use super::{Artifact, Exporter, Extras, ReportError, json_object};
+use super::{Artifact, Exporter, Extras, ReportError};
 use crate::io::image::png;
 use crate::study::Record;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use context::Page;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
-use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Name of the page in its folder.
 pub const PAGE_NAME: &str = "report.html";
 
-const TEMPLATE: &str = include_str!("page.html.j2");
+/// The page and what it is put together from.
+const TEMPLATES: [(&str, &str); 7] = [
+    ("page.html", include_str!("page/page.html.j2")),
+    ("style.css", include_str!("page/style.css")),
+    ("macros.html", include_str!("page/macros.html.j2")),
+    ("numbers.html", include_str!("page/numbers.html.j2")),
+    ("where.html", include_str!("page/where.html.j2")),
+    ("why.html", include_str!("page/why.html.j2")),
+    ("how.html", include_str!("page/how.html.j2")),
+];
 
-/// The report folder: the page, its data as `record.json`, each picture as PNG, each view as EXR; `timing.json`
+/// The report folder: the page, the finished record as `record.json`, each picture as PNG, each view as EXR; `timing.json`
 /// where times are given.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct HtmlReport;
@@ -33,9 +48,9 @@ impl Exporter for HtmlReport {
         let pictures = encode(&views)?;
         let page = Page::new(record, &views, extras.timing);
         let mut files = vec![Artifact::new(PAGE_NAME, render(&page, &pictures)?)];
-        files.push(json_file("record.json", &record_json(record, &views)?)?);
+        files.push(record_file(record)?);
         if !extras.timing.is_empty() {
-            files.push(json_file("timing.json", &timing_json(extras))?);
+            files.push(timing_file(extras.timing)?);
         }
         files.extend(pictures);
         for (view, shown) in extras.views.iter().zip(&views) {
@@ -50,7 +65,7 @@ fn encode(views: &[ViewFigures]) -> Result<Vec<Artifact>, ReportError> {
     let all = views.iter().flat_map(|v| v.figures.iter().map(move |f| (v, f)));
     let one = |(v, f): (&ViewFigures, &super::Figure)| {
         let bytes = png(f.raster.width, f.raster.height, &f.raster.rgba)?;
-        Ok(Artifact::new(context::picture_name(&v.stem, f.kind), bytes))
+        Ok(Artifact::new(pictures::picture_name(&v.stem, f.kind), bytes))
     };
     all.map(one).collect()
 }
@@ -64,24 +79,10 @@ fn render(page: &Page, pictures: &[Artifact]) -> Result<String, ReportError> {
     env.set_undefined_behavior(UndefinedBehavior::Strict);
     env.set_trim_blocks(true);
     env.set_lstrip_blocks(true);
-    Ok(env.template_from_str(TEMPLATE)?.render(context! { page, uris })?)
-}
-
-/// The page's data, times left out, with the numbers it was made of.
-fn record_json(record: &Record, views: &[ViewFigures]) -> Result<serde_json::Value, ReportError> {
-    let page = serde_json::to_value(Page::new(record, views, &[]))?;
-    Ok(json!({ "format": "etalon-report/1", "comparison": json_object(record)?, "page": page }))
-}
-
-fn timing_json(extras: &Extras) -> serde_json::Value {
-    let phases: Vec<_> = extras.timing.iter().map(|p| json!({ "phase": p.name, "seconds": p.seconds })).collect();
-    json!({ "format": "etalon-timing/1", "phases": phases })
-}
-
-fn json_file(name: &str, value: &serde_json::Value) -> Result<Artifact, ReportError> {
-    let mut text = serde_json::to_string_pretty(value)?;
-    text.push('\n');
-    Ok(Artifact::new(name, text))
+    for (name, text) in TEMPLATES {
+        env.add_template(name, text)?;
+    }
+    Ok(env.get_template("page.html")?.render(context! { page, uris })?)
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ fn the_pages_data() {
         ".views[].figures[].bar.stops" => "[colours]",
         ".views[].figures[].marks" => "[marks]",
         ".worst.rows[1:]" => "[more]",
+        ".charts[].bars[2:]" => "[more]",
     });
 }
 
@@ -51,8 +52,80 @@ fn the_folder_holds_page_data_pictures_and_layers() {
     assert_eq!(&files[3].bytes[..4], b"\x89PNG");
     assert_eq!(&files[9].bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
     let data: serde_json::Value = serde_json::from_slice(&files[1].bytes).expect("json");
-    assert_eq!(data["format"], "etalon-report/1");
+    assert_eq!(data["format"], "etalon-record/1");
     assert_eq!(data["comparison"]["rms"]["value"], 0.013412);
+}
+
+/// Nine figures: machines differ in the last ones.
+fn rounded(value: serde_json::Value) -> serde_json::Value {
+    use serde_json::Value;
+    match value {
+        Value::Number(n) if n.is_f64() => {
+            let x = n.as_f64().expect("a number");
+            format!("{x:.8e}").parse::<f64>().expect("a number").into()
+        }
+        Value::Array(all) => all.into_iter().map(rounded).collect(),
+        Value::Object(all) => all.into_iter().map(|(name, v)| (name, rounded(v))).collect(),
+        other => other,
+    }
+}
+
+#[test]
+fn the_record_as_data() {
+    let file = record_file(&with_verdict(Verdict::Fail)).expect("json");
+    let data: serde_json::Value = serde_json::from_slice(&file.bytes).expect("json");
+    insta::assert_json_snapshot!(rounded(data), {
+        ".breakdown.noise.scores" => "[by patch]",
+        ".reference" => "[by patch]",
+        ".solution" => "[by patch]",
+        ".stage" => "[the scene]",
+    });
+}
+
+#[test]
+fn the_record_makes_the_same_page_again() {
+    let views = seen();
+    let timing = [Phase { name: "Rays".into(), seconds: 1.25 }];
+    let extras = Extras { views: &views, timing: &timing };
+    let first = HtmlReport.export(&with_verdict(Verdict::Fail), &extras).expect("report");
+    let read = crate::report::read_record(&first[1].bytes).expect("a record");
+    assert!(HtmlReport.export(&read, &extras).expect("report") == first);
+}
+
+/// What a reader is told must change with the data: reference and solution swapped, a finding dropped, a bin moved.
+#[test]
+fn the_pages_data_follow_the_record() {
+    let record = with_verdict(Verdict::Fail);
+    let data = |r: &Record| serde_json::to_value(Page::new(r, &[], &[])).expect("json");
+    let whole = data(&record);
+    let mut other = record.clone();
+    other.findings.clear();
+    assert_eq!(
+        (whole["findings"].as_array().map(Vec::len), data(&other)["findings"].as_array().map(Vec::len)),
+        (Some(1), Some(0))
+    );
+    let breakdown = other.breakdown.as_mut().expect("a breakdown");
+    let bins = &mut breakdown.errors.as_mut().expect("errors").bins;
+    let fullest = (0..bins.len()).max_by(|a, b| bins[*a].total_cmp(&bins[*b])).expect("bins");
+    bins.swap(fullest, fullest + 1);
+    assert_ne!(whole["charts"][0]["bars"], data(&other)["charts"][0]["bars"]);
+    assert_eq!(whole["charts"][1], data(&other)["charts"][1]);
+}
+
+#[test]
+fn no_findings_reads_none_and_no_noise_draws_no_noise() {
+    let mut r = record();
+    assert!(page(&r, &Extras::default()).contains("The middle of patch 12 lies inside the box."));
+    r.findings.clear();
+    let breakdown = r.breakdown.as_mut().expect("a breakdown");
+    breakdown.noise = None;
+    r.contributions.clear();
+    let html = page(&r, &Extras::default());
+    assert!(html.contains("<p class=\"lead\">None.</p>") && !html.contains("Error or noise?"));
+    assert!(!html.contains("What lights the worst"));
+    r.breakdown = None;
+    let html = page(&r, &Extras::default());
+    assert!(!html.contains("By surface") && !html.contains(">Why<"));
 }
 
 #[test]
@@ -65,6 +138,15 @@ fn whatever_a_scene_is_called_stays_text() {
     r.notices = vec![attack.into()];
     r.truth = attack.into();
     r.settings[0].value = attack.into();
+    r.settings[1].default = Some(attack.into());
+    let finding = &mut r.findings[0];
+    (finding.what, finding.mend, finding.place.surfaces) = (attack.into(), attack.into(), vec![attack.into()]);
+    r.contributions[0].sources[0].surface = attack.into();
+    r.contributions[0].surface = attack.into();
+    let breakdown = r.breakdown.as_mut().expect("a breakdown");
+    breakdown.surfaces[0].name = attack.into();
+    breakdown.surfaces[0].object = Some(attack.into());
+    breakdown.objects[0].name = attack.into();
     r.provenance[0].1 = attack.into();
     r.comparison.worst[0].surface = attack.into();
     r.comparison.per_band[0].0 = attack.into();
