@@ -90,8 +90,8 @@ fn finding(patient: &Patient, turned: &Turned, whose: Whose, facets: &BTreeSet<u
             unit: "share".into(),
         }),
         mend: match buried {
-            true => "let it stand on the surface instead of in it (what is covered is found by itself), or cut the \
-                     surface where it enters"
+            true => "give the body a bottom that faces outward and stands on the surface (what it covers is then left out), \
+                     or cut the surface where it enters"
                 .into(),
             false => "set two_sided = true if both sides radiate, or turn it over".into(),
         },

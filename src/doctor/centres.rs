@@ -3,6 +3,7 @@
 use super::Patient;
 use super::probe::{fraction, total};
 use super::text::{LISTED, digits, names, patches, percent, surfaces_of, verb};
+use super::winding::Turned;
 use crate::estimate::{Emitter, patch_emitters};
 use crate::math::{DVec3, area, intersect_convex, unit_normal};
 use crate::raycast::{BACK, RayBatch, Tracer};
@@ -14,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const FAN: usize = 64;
 
 /// One finding for each surface with such patches.
-pub(super) fn findings(patient: &Patient) -> Vec<Finding> {
+pub(super) fn findings(patient: &Patient, turned: &Turned) -> Vec<Finding> {
     let stage = patient.stage;
     let tracer = patient.probe.tracer(stage);
     let emitters = patch_emitters(stage);
@@ -35,7 +36,14 @@ pub(super) fn findings(patient: &Patient) -> Vec<Finding> {
             entry.1.extend(facets);
         }
     }
-    found.into_iter().map(|(key, (list, around))| finding(stage, key, &list, &around)).collect()
+    found
+        .into_iter()
+        .map(|(key, (list, around))| {
+            let solid = |f: &u32| turned.bodies[turned.body_of[*f as usize] as usize].is_solid();
+            let how = if key.1 == Severity::Note || around.iter().any(solid) { "inside" } else { "close behind" };
+            finding(stage, key, (how, &list), &around)
+        })
+        .collect()
 }
 
 /// Mean of the corners of quadrilaterals and triangles: where hemi-cubes are put.
@@ -75,12 +83,17 @@ fn buried(tracer: &Tracer, emitter: &Emitter, place: DVec3) -> Option<Vec<u32>> 
     (2 * backs.len() > FAN).then_some(backs)
 }
 
-fn finding(stage: &Stage, (surface, severity): (u32, Severity), list: &[u32], around: &BTreeSet<u32>) -> Finding {
+fn finding(
+    stage: &Stage,
+    (surface, severity): (u32, Severity),
+    (how, list): (&str, &[u32]),
+    around: &BTreeSet<u32>,
+) -> Finding {
     let name = &stage.surfaces[surface as usize].name;
     let what_around = surfaces_of(stage, around.iter().copied());
     let size: f64 = list.iter().map(|i| stage.patches[*i as usize].area).sum();
     let all: f64 = stage.areas().iter().sum();
-    let inside = if what_around.is_empty() { String::new() } else { format!(" of {}", names(&what_around)) };
+    let inside = if what_around.is_empty() { how.into() } else { format!("{how} {}", names(&what_around)) };
     Finding {
         kind: FindingKind::BuriedCentre,
         severity,
@@ -91,14 +104,14 @@ fn finding(stage: &Stage, (surface, severity): (u32, Severity), list: &[u32], ar
             point: Some(middle(&stage.patches[list[0] as usize]).to_array()),
         },
         what: format!(
-            "the {} of {} of \"{name}\" {} inside{inside}",
+            "the {} of {} of \"{name}\" {} {inside}",
             verb(list.len(), "middle", "middles"),
             patches(list),
             verb(list.len(), "lies", "lie")
         ),
         consequence: Some(Consequence {
             text: format!(
-                "a hemi-cube put there sees the inside of a body: {} m^2, {} of the scene's area, get its light",
+                "a hemi-cube put there sees black backs: {} m^2, {} of the scene's area, get its light",
                 digits(size),
                 percent(size / all)
             ),

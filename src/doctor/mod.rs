@@ -58,7 +58,7 @@ fn examine_stage(stage: &Stage) -> Vec<Finding> {
     let mut findings = shape::units(stage);
     findings.extend(shape::slivers(stage));
     findings.extend(contact::findings(stage));
-    findings.extend(centres::findings(&patient));
+    findings.extend(centres::findings(&patient, &turned));
     findings.extend(winding::findings(&patient, &turned));
     findings.extend(backs::findings(&patient, &turned));
     findings.extend(gaps::findings(&patient, &turned));

@@ -189,7 +189,7 @@ impl Body {
     }
 
     /// True if it is closed and looks outward.
-    fn is_solid(&self) -> bool {
+    pub(super) fn is_solid(&self) -> bool {
         self.closed && self.looks_outward() && self.facets.len() > 3
     }
 

@@ -39,12 +39,12 @@ impl Scene {
     pub fn shared_areas(&self, state: usize) -> Result<Vec<SharedArea>, SceneError> {
         let (facets, overlaps) = self.coincidences(state)?;
         let names = Names::of(self);
-        let owner = |facet: u32| names.owner(facets[facet as usize].surface);
+        let number = |facet: u32| facets[facet as usize].surface;
         let mut found: BTreeMap<(u32, u32), Sum> = BTreeMap::new();
         for o in overlaps.iter().filter(|o| o.radiates_twice(&facets)) {
-            found.entry((owner(o.first), owner(o.second))).or_default().add(o, &facets);
+            found.entry((number(o.first), number(o.second))).or_default().add(o, &facets);
         }
-        let name = |i: u32| self.surfaces[i as usize].name.clone();
+        let name = |i: u32| names.list[i as usize].name.clone();
         Ok(found.into_iter().map(|((a, b), sum)| sum.named([name(a), name(b)])).collect())
     }
 }
