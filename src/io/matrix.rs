@@ -245,7 +245,7 @@ impl Reader<'_> {
         let mut out = Vec::new();
         for (number, line) in lines {
             let [i, j, f] = parse((number, line))?;
-            if i < 1.0 || j < 1.0 {
+            if !(i >= 1.0 && j >= 1.0) {
                 return Err(self.wrong("numbers count from 1 in .mtx").at(format!("line {}", number + 1)));
             }
             out.push((i as usize - 1, j as usize - 1, f, f64::NAN));
