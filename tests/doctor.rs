@@ -168,8 +168,8 @@ fn a_lamp_too_small_for_the_default_number_of_rays() {
         16e-6 * (to.dot(patch.normal) * to.z).max(0.0) / (std::f64::consts::PI * to.length_squared().powi(2))
     };
     let factor = (0..256).map(at).sum::<f64>() / 256.0;
-    // Reflected light, as if even: the lamp's power, rho / (1 - rho) times, over the walls.
-    let ambient = 16e-6 / 6.0;
+    // Reflected light, as if even: the lamp's power, rho / (1 - rho) = 1/9 times, over the walls.
+    let ambient = 16e-6 / 6.0 / 9.0;
     let rays = factor * (1.0 - factor) / (factor + ambient).powi(2) * 1e4;
     assert!((value(&f) / rays - 1.0).abs() < 0.1, "{} against {rays}", value(&f));
     assert_eq!(value(&f), f.place.values[0]);

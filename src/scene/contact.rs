@@ -118,6 +118,9 @@ impl Survey<'_> {
 
     fn overlap(&self, i: u32, j: u32) -> Option<Overlap> {
         let (a, b) = (&self.facets[i as usize], &self.facets[j as usize]);
+        if apart(a, b, self.tolerance) || apart(b, a, self.tolerance) {
+            return None;
+        }
         let polygon = intersect_convex(&b.vertices, &a.vertices);
         if polygon.len() < 3 || area(&polygon) <= self.tolerance * diameter(&polygon) {
             return None;
@@ -185,6 +188,16 @@ impl Survey<'_> {
             false => Some(back < front),
         }
     }
+}
+
+/// True if an edge of `a` leaves all of `b` outside, or no further inside than the tolerance: what the two have in
+/// common is then a strip too narrow to count. Most neighbours are told apart here, before anything is clipped.
+fn apart(a: &Facet, b: &Facet, tolerance: f64) -> bool {
+    let k = a.vertices.len();
+    (0..k).any(|i| {
+        let inward = a.normal.cross(a.vertices[(i + 1) % k] - a.vertices[i]).normalize_or_zero();
+        inward != DVec3::ZERO && b.vertices.iter().all(|p| inward.dot(*p - a.vertices[i]) <= tolerance)
+    })
 }
 
 /// Direction k of a spiral over the hemisphere without its rim.

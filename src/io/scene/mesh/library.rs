@@ -1,12 +1,12 @@
 //! OBJ files with their material libraries.
 
-use super::model::{At, FileMaterial, MeshFault, Unusable, optics};
+use super::model::{At, FileMaterial, Unusable, optics};
 use super::mtl::{self, Mtl};
 use super::obj::Obj;
 use super::{Format, Loaded, Near};
 use crate::io::scene::check::{Checked, known_names};
 use crate::io::scene::error::Refusal;
-use crate::io::scene::folder::{bytes_of, lossy};
+use crate::io::scene::folder::lossy;
 use crate::io::scene::source::Source;
 use std::collections::BTreeMap;
 
@@ -30,41 +30,28 @@ pub(super) fn read_obj(bytes: Vec<u8>, near: &Near) -> Checked<Loaded> {
 fn library(obj: &mut Obj, source: &Source, near: &Near) -> Checked<Library> {
     let mut library = Library::new();
     for (file, line) in obj.libraries.clone() {
-        match one_library(&file, line, source, near) {
-            Ok((name, materials)) => {
-                for m in materials {
-                    library.entry(m.name.clone()).or_insert((m, name.clone()));
-                }
-            }
+        let read = match file_of(&file, line, source, near) {
+            Ok(read) => read,
             // Without its library the mesh can still be read where the scene file gives a material.
-            Err((_, fault)) if near.has_fallback() && fault.refusal != Refusal::Syntax => {
-                obj.mesh.notices.push(format!(
-                    "the library \"{}\" is left out: {}",
-                    file.escape_debug(),
-                    fault.message
-                ));
+            Err(e) if near.has_fallback() => {
+                obj.mesh.notices.push(format!("the library \"{}\" is left out: {}", file.escape_debug(), e.message()));
+                continue;
             }
-            Err((source, fault)) => return Err(near.refusal(&source, fault)),
+            Err(e) => return Err(e.mend("add the file, or give the surface a material = ")),
+        };
+        for material in mtl::parse(&read.text).map_err(|e| near.refusal(&read, e))? {
+            library.entry(material.name.clone()).or_insert((material, read.name.clone()));
         }
     }
     Ok(library)
 }
 
-/// One library, or what is wrong with it and in which file.
-fn one_library(file: &str, line: usize, obj: &Source, near: &Near) -> Result<(String, Vec<Mtl>), (Source, MeshFault)> {
+/// The text of a library that a line of an OBJ file names.
+fn file_of(file: &str, line: usize, obj: &Source, near: &Near) -> Checked<Source> {
     let at = At::Line(line);
-    let unread = |mut fault: MeshFault| {
-        fault.mend = "add the file, or give the surface a material = ".into();
-        (obj.clone(), fault)
-    };
-    let path = near.locate(&at, file).map_err(unread)?;
-    let bytes = bytes_of(&path).map_err(|why| {
-        let message = format!("cannot read \"{}\": {why}", file.escape_debug());
-        unread(MeshFault { refusal: Refusal::Unreadable, at: at.clone(), message, mend: String::new() })
-    })?;
-    let source = Source::new(&path, lossy(bytes));
-    let name = source.name.clone();
-    mtl::parse(&source.text).map(|read| (name, read)).map_err(|fault| (source, fault))
+    let path = near.locate(&at, file).map_err(|e| near.refusal(obj, e))?;
+    let bytes = near.bytes(&at, file).map_err(|e| near.refusal(obj, e))?;
+    Ok(Source::new(&path, lossy(bytes)))
 }
 
 /// The material that a `usemtl` means.

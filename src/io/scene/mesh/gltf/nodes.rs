@@ -49,7 +49,9 @@ fn tops(root: &Root) -> Result<Vec<usize>, MeshFault> {
     if root.scenes.is_empty() {
         let mut child = vec![false; root.nodes.len()];
         for c in root.nodes.iter().flat_map(|n| &n.children) {
-            child.get_mut(*c).map(|seen| *seen = true);
+            if let Some(seen) = child.get_mut(*c) {
+                *seen = true;
+            }
         }
         return Ok((0..root.nodes.len()).filter(|n| !child[*n]).collect());
     }
