@@ -135,6 +135,10 @@ fn with_checksum(manifest: &[u8], name: &str, data: &[u8]) -> Vec<u8> {
     let mut value: serde_json::Value = serde_json::from_slice(manifest).expect("a sound manifest");
     let sum: String = Sha256::digest(data).iter().map(|b| format!("{b:02x}")).collect();
     value["sha256"][name] = sum.into();
+    // The manifest's own checksum is that of its text without it.
+    value["checksum"] = "".into();
+    let own: String = Sha256::digest(value.to_string()).iter().map(|b| format!("{b:02x}")).collect();
+    value["checksum"] = own.into();
     value.to_string().into_bytes()
 }
 
