@@ -162,7 +162,7 @@ mod tests {
     use crate::stats::test_random::Random;
 
     fn by_two<'a>(i: usize) -> Key<'a> {
-        (Some("room"), if i % 2 == 0 { "floor" } else { "wall" })
+        (Some("room"), if i.is_multiple_of(2) { "floor" } else { "wall" })
     }
 
     #[test]
@@ -189,7 +189,7 @@ mod tests {
     fn intervals_cover_the_truth_where_patches_err_together() {
         let n = 40;
         let truth: Vec<f64> = (0..n).map(|i| 1.0 + 0.3 * (i as f64).sin()).collect();
-        let error = |i: usize| if i % 2 == 0 { 0.03 } else { -0.02 };
+        let error = |i: usize| if i.is_multiple_of(2) { 0.03 } else { -0.02 };
         let solution: Vec<f64> = (0..n).map(|i| truth[i] + error(i)).collect();
         let (share, bias) = (0.0009 / 0.0013, 0.03);
         let mut random = Random(5);
