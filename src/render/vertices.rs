@@ -30,8 +30,6 @@ pub struct Stencils {
 #[derive(Debug, Clone, Default)]
 struct Stencil {
     weights: Vec<(u32, f64)>,
-    /// True if the value may leave the range of the cells.
-    extrapolates: bool,
 }
 
 /// Something with a value in a place: a cell, or a vertex that is done.
@@ -70,9 +68,6 @@ impl Stencil {
             return if low == high { low } else { 0.0 };
         }
         let sum: f64 = self.weights.iter().map(|(c, w)| w * cells[*c as usize]).sum();
-        if !self.extrapolates {
-            return sum.clamp(low, high);
-        }
         let slack = MOST_WIDTHS * (high - low);
         let least = if low >= 0.0 { (low - slack).max(0.0) } else { low - slack };
         sum.clamp(least, high + slack)
@@ -116,7 +111,7 @@ fn stencil(mesh: &Mesh, vertex: &Vertex, rank: Rank, done: &[Option<Stencil>]) -
             *sum.entry(*c).or_insert(0.0) += w * part;
         }
     }
-    Stencil { weights: sum.into_iter().collect(), extrapolates: rank != Rank::Inner }
+    Stencil { weights: sum.into_iter().collect() }
 }
 
 /// The nearest inner vertices of the cells around; where there are none, all that are done.
