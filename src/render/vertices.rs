@@ -1,4 +1,4 @@
-//! From patches to their corners, so that shading can run smoothly: the rule of CG85, figure 8.
+//! From patches to their corners, so that shading can run smoothly: [CG85 fig. 8].
 //!
 //! Inside a surface a vertex has the mean of the patches around it. On the rim it is extrapolated from the nearest
 //! inner vertex through the mean of the patches at the rim. Both are the same thing said once: the plane of least
