@@ -1,5 +1,6 @@
 //! Patches or elements joined where they touch: what smooth shading runs over.
 
+use super::junctions::connect;
 use super::weld::Welder;
 use crate::math::{DVec3, centroid};
 use crate::scene::{Region, Stage};
@@ -59,7 +60,9 @@ impl<'a> Mesh<'a> {
             let patch = &stage.patches[mesh.patch_of(cell)];
             mesh.cells[cell] = welder.join(cell as u32, mesh.corners(cell), patch.normal, patch.material);
         }
-        mesh.vertices = welder.vertices();
+        let (mut vertices, tolerance) = welder.vertices();
+        connect(&mesh.cells, &mut vertices, tolerance);
+        mesh.vertices = vertices;
         mesh
     }
 

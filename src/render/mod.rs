@@ -7,6 +7,7 @@ mod exposure;
 mod field;
 mod fit;
 mod items;
+mod junctions;
 mod mesh;
 mod paint;
 mod scale;

@@ -1,4 +1,4 @@
-//! From patches to their corners, so that shading can run smoothly: the rule of CG85, figure 8.
+//! From patches to their corners, so that shading can run smoothly: [CG85 fig. 8].
 //!
 //! Inside a surface a vertex has the mean of the patches around it. On the rim it is extrapolated from the nearest
 //! inner vertex through the mean of the patches at the rim. Both are the same thing said once: the plane of least
@@ -30,8 +30,6 @@ pub struct Stencils {
 #[derive(Debug, Clone, Default)]
 struct Stencil {
     weights: Vec<(u32, f64)>,
-    /// True if the value may leave the range of the cells.
-    extrapolates: bool,
 }
 
 /// Something with a value in a place: a cell, or a vertex that is done.
@@ -70,9 +68,6 @@ impl Stencil {
             return if low == high { low } else { 0.0 };
         }
         let sum: f64 = self.weights.iter().map(|(c, w)| w * cells[*c as usize]).sum();
-        if !self.extrapolates {
-            return sum.clamp(low, high);
-        }
         let slack = MOST_WIDTHS * (high - low);
         let least = if low >= 0.0 { (low - slack).max(0.0) } else { low - slack };
         sum.clamp(least, high + slack)
@@ -116,7 +111,7 @@ fn stencil(mesh: &Mesh, vertex: &Vertex, rank: Rank, done: &[Option<Stencil>]) -
             *sum.entry(*c).or_insert(0.0) += w * part;
         }
     }
-    Stencil { weights: sum.into_iter().collect(), extrapolates: rank != Rank::Inner }
+    Stencil { weights: sum.into_iter().collect() }
 }
 
 /// The nearest inner vertices of the cells around; where there are none, all that are done.

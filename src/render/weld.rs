@@ -44,13 +44,14 @@ impl Welder {
         joined
     }
 
-    pub(super) fn vertices(self) -> Vec<Vertex> {
-        self.vertices
+    /// The vertices, once all cells have been joined, and the distance within which points are one.
+    pub(super) fn vertices(self) -> (Vec<Vertex>, f64) {
+        (self.vertices, self.tolerance)
     }
 
     fn find(&self, point: DVec3, normal: DVec3, material: u32) -> Option<u32> {
         let near = |v: &Vertex| v.point.distance(point) <= self.tolerance;
-        let same = |v: &Vertex| v.material == material && v.normal.dot(normal) >= SAME_SURFACE;
+        let same = |v: &Vertex| same_surface(v, normal, material);
         let reach = DVec3::splat(self.tolerance);
         let (low, high) = (self.place(point - reach), self.place(point + reach));
         // Nearly always one box; a point by a wall of its box looks into the next one too.
@@ -78,4 +79,9 @@ impl Welder {
     fn place(&self, p: DVec3) -> [i64; 3] {
         (p / (16.0 * self.tolerance)).floor().to_array().map(|x| x as i64)
     }
+}
+
+/// True if a vertex is on a surface that looks this way and is of this material.
+pub(super) fn same_surface(vertex: &Vertex, normal: DVec3, material: u32) -> bool {
+    vertex.material == material && vertex.normal.dot(normal) >= SAME_SURFACE
 }

@@ -65,6 +65,34 @@ fn facets_of_one_plane_are_one_surface_even_where_their_cells_differ_in_size() {
 }
 
 #[test]
+fn divisions_that_do_not_meet_make_one_surface_too() {
+    let left = [DVec3::ZERO, DVec3::X, DVec3::X + 2.0 * DVec3::Y, 2.0 * DVec3::Y];
+    let right = [DVec3::X, DVec3::new(2.0, 0.0, 0.0), DVec3::new(2.0, 2.0, 0.0), DVec3::new(1.0, 2.0, 0.0)];
+    let polygons = [quads(left, 4, 5), quads(right, 3, 7)].concat();
+    let e = error_on_linear(&polygons);
+    assert!(e < 1e-11, "{e}");
+    let stage = Stage::from_polygons(&polygons);
+    let mesh = Mesh::of_patches(&stage);
+    // A curved field: both sides agree along the border far better than its patches differ across it.
+    let curved = |p: DVec3| 10.0 + 6.0 * p.x * p.x + 4.0 * (3.0 * p.y).sin();
+    let b: Vec<f64> = polygons.iter().map(|p| curved(centroid(p))).collect();
+    let values = Stencils::of(&mesh).values(&b);
+    let side = |cells: std::ops::Range<usize>, p: DVec3| {
+        let holds = |c: &usize| {
+            mesh.corners(*c).iter().map(|v| v.y - p.y).fold([9.0, -9.0f64], |[l, h], d| [l.min(d), h.max(d)])
+        };
+        let touches = |c: &usize| mesh.corners(*c).iter().any(|v| (v.x - 1.0).abs() < 1e-9);
+        let cell = cells.filter(touches).find(|c| holds(c)[0] <= 0.0 && holds(c)[1] >= 0.0).expect("a cell");
+        mesh.value_at(cell, p, &values)
+    };
+    for k in 0..40 {
+        let p = DVec3::new(1.0, 0.05 * f64::from(k) + 0.01, 0.0);
+        let (l, r) = (side(0..20, p), side(20..41, p));
+        assert!((l - r).abs() < 0.4, "at {p}: {l} against {r}");
+    }
+}
+
+#[test]
 fn the_weights_are_those_of_the_paper() {
     let stage = Stage::from_polygons(&quads(unit_square(), 4, 4));
     let mesh = Mesh::of_patches(&stage);
