@@ -176,11 +176,8 @@ impl Reader<'_> {
 
     fn npz(&self, bytes: &[u8]) -> Result<Vec<Triplet>, FileError> {
         let members = npz::unzip(self.path, bytes)?;
-        let member = |name: &str| {
-            members.get(name).ok_or_else(|| {
-                self.wrong(format!("has no array \"{name}\"")).mend(SAVE)
-            })
-        };
+        let member =
+            |name: &str| members.get(name).ok_or_else(|| self.wrong(format!("has no array \"{name}\"")).mend(SAVE));
         let numbers = |name: &str| Ok(npz::numbers(self.path, name, member(name)?)?.1);
         let shape = numbers("shape")?;
         let [rows, columns] = shape[..] else {
@@ -194,8 +191,7 @@ impl Reader<'_> {
             "csr" | "csc" => {
                 let (starts, indices) = (numbers("indptr")?, numbers("indices")?);
                 let whole = starts.iter().all(|s| s.fract() == 0.0);
-                if !whole || starts.len() != self.n + 1 || starts.windows(2).any(|w| w[1] < w[0]) || starts[0] != 0.0
-                {
+                if !whole || starts.len() != self.n + 1 || starts.windows(2).any(|w| w[1] < w[0]) || starts[0] != 0.0 {
                     let problem = format!("is not a rising list of {} whole numbers from 0", self.n + 1);
                     return Err(self.wrong(problem).at("array \"indptr\"").mend(SAVE));
                 }
