@@ -136,19 +136,19 @@ pub struct SceneArgs {
 #[derive(Debug, Clone, Args)]
 pub struct RayArgs {
     /// Rays per patch over all randomisations, rounded up to R 2^m.
-    #[arg(long, default_value_t = 16_384, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 16_384, allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..))]
     pub rays: u64,
     /// Go on until this one-sigma relative error is reached, instead of --rays.
-    #[arg(long, value_name = "E", conflicts_with = "rays")]
+    #[arg(long, value_name = "E", conflicts_with = "rays", allow_hyphen_values = true)]
     pub target_error: Option<Fraction>,
     /// Independent randomisations of the whole scene.
     #[arg(long, value_name = "R", default_value_t = 16, value_parser = clap::value_parser!(u16).range(8..=4095))]
     pub randomisations: u16,
     /// Stop when more would not fit into this time: 90s, 5m, 1h.
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub max_time: Option<Span>,
     /// Seed of the random streams.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, allow_hyphen_values = true)]
     pub seed: u64,
     /// auto: whatever is most accurate; rays: hemisphere rays only (in this version both are the same).
     #[arg(long, value_enum, default_value_t = Estimator::Auto)]
@@ -264,7 +264,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     pub max_edge: Option<f64>,
     /// Confidence of the intervals: two-sided, simultaneous over the limits given.
-    #[arg(long, default_value = "0.95", value_name = "C")]
+    #[arg(long, default_value = "0.95", value_name = "C", allow_hyphen_values = true)]
     pub confidence: Fraction,
     /// Level of the values.
     #[arg(long, value_enum, default_value_t = PerLevel::Patch)]
@@ -290,10 +290,10 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub compare: CompareArgs,
     /// Limit on the area-weighted luminance RMS (eq. 7): 0.05 or 5%.
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
     pub max_rms: Option<Fraction>,
     /// Limit on the top-1 % metric; needs --before.
-    #[arg(long, value_name = "Y")]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
     pub max_top1: Option<Fraction>,
     /// Write JUnit XML here.
     #[arg(long, value_name = "FILE")]

@@ -77,16 +77,15 @@ pub(super) fn numbers(path: &Path, name: &str, npy: &[u8]) -> Result<(Vec<u64>, 
             .at(format!("array \"{name}\""))
             .mend("is it cut off? save it again as a plain array of float64")
     };
+    // A damaged shape must not ask for memory, and npyz multiplies it unchecked.
+    if values_announced(npy).is_some_and(|n| n > npy.len() as u64) {
+        return Err(broken(&"its shape needs more bytes than there are"));
+    }
     let open = || npyz::NpyFile::new(npy).map_err(|e| broken(&e));
     let header = open()?;
     let shape = header.shape().to_vec();
     if header.order() == npyz::Order::Fortran && shape.len() > 1 {
         return Err(broken(&"it is stored in Fortran order").mend("save numpy.ascontiguousarray(...)"));
-    }
-    // A damaged shape must not ask for memory.
-    let least = shape.iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX);
-    if least > npy.len() as u64 {
-        return Err(broken(&format!("shape {shape:?} needs more bytes than there are")).mend("is it cut off?"));
     }
     let dtype = header.dtype().descr();
     let kind = dtype.trim_matches('\'').trim_start_matches(['<', '|', '=']).to_string();
@@ -106,6 +105,16 @@ pub(super) fn numbers(path: &Path, name: &str, npy: &[u8]) -> Result<(Vec<u64>, 
         other => return Err(broken(&format!("type {other} is not supported")).mend("save float64 values")),
     };
     Ok((shape, values))
+}
+
+/// The product of the numbers after `'shape'` in the header, as far as 64 bits go; `None` if there is no such thing.
+fn values_announced(npy: &[u8]) -> Option<u64> {
+    let header = &npy[..npy.len().min(1 << 16)];
+    let at = header.windows(7).position(|w| w == b"'shape'")?;
+    let tuple = header[at..].split(|b| *b == b'(').nth(1)?.split(|b| *b == b')').next()?;
+    let sizes = tuple.split(|b| *b == b',').map(|d| String::from_utf8_lossy(d).trim().to_string());
+    let size = |d: String| d.trim_end_matches('L').parse::<u64>().unwrap_or(u64::MAX);
+    Some(sizes.filter(|d| !d.is_empty()).map(size).fold(1, u64::saturating_mul))
 }
 
 /// Text of a scalar string array (bytes or unicode); SciPy writes either.

@@ -5,9 +5,11 @@ use crate::cli::args::SolveArgs;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
+use crate::estimate::Plan;
 use crate::io::{BandNames, MatrixFormat, SolutionFormat, read_form_factors, write_form_factors, write_solution};
 use crate::methods::Method;
 use crate::raycast::KernelKind;
+use crate::reference::check_size;
 use crate::study::{self, Receivers, SolveRequest};
 use serde_json::json;
 
@@ -19,6 +21,10 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
     let method = method(args)?;
     let stage = inputs::stage(&args.scene, console)?;
     let given = args.form_factors.as_deref().map(|f| read_form_factors(f, stage.patch_count())).transpose()?;
+    if let (Method::Gather(p), None) = (&method, &given) {
+        let plan = Plan { rays: p.rays, randomisations: p.randomisations, ..Plan::default() };
+        check_size(&stage, &plan)?;
+    }
     let session = inputs::session(&stage, kernel, console)?;
     let per_element = args.per == PerLevel::Element;
     let request = SolveRequest { method, form_factors: given.as_ref(), seed: args.seed, per_element };
