@@ -111,7 +111,7 @@ fn finding(
         ),
         consequence: Some(Consequence {
             text: format!(
-                "a hemi-cube put there sees black backs: {} m^2, {} of the scene's area, get its light",
+                "a hemi-cube put there sees black backs: {} m², {} of the scene's area, get its light",
                 digits(size),
                 percent(size / all)
             ),

@@ -75,7 +75,7 @@ fn finding(stage: &Stage, surface: u32, covered: &Covered) -> Finding {
             percent(list[0].1)
         ),
         consequence: Some(Consequence {
-            text: format!("{} m^2 take no part: {} of the area of \"{name}\"", digits(total), percent(share)),
+            text: format!("{} m² take no part: {} of the area of \"{name}\"", digits(total), percent(share)),
             value: total,
             std_err: None,
             unit: "m^2".into(),

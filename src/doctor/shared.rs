@@ -28,7 +28,7 @@ pub(super) fn finding(shared: &SharedArea) -> Finding {
         what,
         consequence: Some(Consequence {
             text: format!(
-                "{} m^2 (a square of {}) belong to two faces; the earlier one keeps them, the later one loses \
+                "{} m² (a square of {}) belong to two faces; the earlier one keeps them, the later one loses \
                  them. Programs that keep both count that light twice",
                 digits(shared.area),
                 metres(shared.area.sqrt())

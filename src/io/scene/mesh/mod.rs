@@ -143,7 +143,11 @@ fn load(folder: &Folder, spec: &MeshSpec) -> Checked<Loaded> {
         Ok(bytes) => bytes,
         Err(why) => {
             let what = if file.named.is_some() { format!("\"{}\"", file.shown) } else { "the mesh".into() };
-            return file.refuse(Refusal::Unreadable, format!("cannot read {what}: {why}"), "check the file");
+            return file.refuse(
+                Refusal::Unreadable,
+                format!("cannot read {what}: {why}"),
+                "name a file that is there and can be read",
+            );
         }
     };
     let Some(format) = Format::of(&file.path) else {
@@ -194,7 +198,9 @@ impl Near<'_> {
     fn bytes(&self, at: &At, name: &str) -> Result<Vec<u8>, MeshFault> {
         bytes_of(&self.locate(at, name)?).or_else(|why| {
             let message = format!("cannot read \"{}\": {why}", name.escape_debug());
-            MeshFault::new(at.clone(), message).of(Refusal::Unreadable).mend("check the file")
+            MeshFault::new(at.clone(), message)
+                .of(Refusal::Unreadable)
+                .mend("name a file that is there and can be read")
         })
     }
 
