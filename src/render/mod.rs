@@ -29,5 +29,6 @@ pub use mesh::{Mesh, Vertex};
 pub use paint::{Raster, paint, paint_cells, paint_field, paint_smooth};
 pub use scale::{Scale, Tick, area_percentile};
 pub use sheet::{Bar, Sheet, side_by_side};
+pub use smooth::vertex_colours;
 pub use vertices::Stencils;
 pub use visibility::{SUPERSAMPLING, View, Visibility, views};

@@ -166,12 +166,12 @@ mod tests {
     fn pictures_come_through_unchanged_and_the_bar_runs_from_end_to_end() {
         let field = Field { values: vec![Some(3.0), Some(0.5)] };
         let scale = Scale::from_zero(&field, &[1.0, 1.0]);
-        let bar = Some(Bar::of(&scale, "luminance, W/m\u{b2}", 1.0));
+        let bar = Bar::of(&scale, "luminance, W/m\u{b2}", 1.0);
         let panels = vec![
             ("left".to_string(), picture(300, 200, [10, 200, 30, 255])),
             ("right".to_string(), picture(300, 200, [7, 7, 7, 0])),
         ];
-        let sheet = Sheet { panels, bar: bar.clone(), caption: "Some words. ".repeat(20) }.compose();
+        let sheet = Sheet { panels, bar: Some(bar.clone()), caption: "Some words. ".repeat(20) }.compose();
         assert_eq!(sheet.width, 612 + 24);
         let top = GAP + LINE + 4;
         assert_eq!(at(&sheet, GAP, top), [10, 200, 30, 255]);
@@ -182,7 +182,7 @@ mod tests {
             let [r, g, b] = scale.colour(value).map(to_srgb8);
             assert_eq!(at(&sheet, x, y), [r, g, b, 255]);
         }
-        let marks: Vec<_> = bar.expect("a bar").marks.into_iter().map(|(_, l)| l).collect();
+        let marks: Vec<_> = bar.marks.into_iter().map(|(_, l)| l).collect();
         assert_eq!(marks, ["0", "1", "2", "3"]);
     }
 

@@ -1,7 +1,8 @@
 //! Values within cells from values at their corners: bilinear in quadrilaterals, linear in triangles.
 
-use super::Mesh;
+use super::{Exposure, LinearRgb, Mesh, Stencils};
 use crate::math::{Bilinear, DVec3, centroid};
+use crate::solution::Radiosity;
 
 impl Mesh<'_> {
     /// Calls `take(vertex, weight)` for the vertices that make the value at a point of a cell; the weights are
@@ -33,6 +34,15 @@ impl Mesh<'_> {
         self.blend(cell, point, |v, w| sum += w * vertices[v]);
         sum
     }
+}
+
+/// Colours at the vertices, linear and not yet clamped, of one set of radiosities per cell: what
+/// [`paint_smooth`](super::paint_smooth) takes.
+pub fn vertex_colours(stencils: &Stencils, exposure: &Exposure, cells: &Radiosity) -> Vec<LinearRgb> {
+    let band = |c: usize| cells.values.iter().skip(c).step_by(cells.bands).copied().collect::<Vec<f64>>();
+    let bands: Vec<Vec<f64>> = (0..cells.bands).map(|c| stencils.values(&band(c))).collect();
+    let count = bands.first().map_or(0, Vec::len);
+    (0..count).map(|v| exposure.linear(&bands.iter().map(|b| b[v]).collect::<Vec<_>>())).collect()
 }
 
 /// Barycentric weights, clamped.

@@ -7,7 +7,7 @@ use crate::cli::exit::Failure;
 use crate::cli::values::Quantity;
 use crate::render::{
     Bar, Exposure, Field, LinearRgb, Mesh, Raster, Scale, Sheet, Stencils, Visibility, luminance, luminance_std_err,
-    paint_cells, paint_field, paint_items, paint_smooth, side_by_side,
+    paint_cells, paint_field, paint_items, paint_smooth, side_by_side, vertex_colours,
 };
 use crate::solution::Radiosity;
 
@@ -85,9 +85,7 @@ impl<'a> Painter<'a> {
         let exposure = exposure(subject, b, look);
         self.constant = (0..b.len()).map(|i| Some(exposure.display(b.of(i)))).collect();
         if self.wants_smooth() {
-            let bands: Vec<Vec<f64>> = (0..b.bands).map(|c| self.at_vertices(&band(b, c))).collect();
-            let vertex = |v: usize| exposure.linear(&bands.iter().map(|band| band[v]).collect::<Vec<_>>());
-            self.smooth = (0..self.mesh.vertices().len()).map(vertex).collect();
+            self.smooth = vertex_colours(&self.stencils, &exposure, b);
         }
         self.exposure = Some(exposure);
     }
