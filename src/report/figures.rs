@@ -5,9 +5,10 @@ use super::artifact::check_shape;
 use super::asked::Level;
 use super::format::{count, round_number, significant};
 use crate::render::{
-    Exposure, Field, LinearRgb, Raster, Scale, View, Visibility, difference, in_standard_errors, luminance,
-    luminance_std_err, paint, relative_difference, to_srgb8,
+    Exposure, Field, LinearRgb, Mesh, Raster, Scale, Stencils, View, Visibility, difference, in_standard_errors,
+    luminance, luminance_std_err, paint, paint_smooth, relative_difference, to_srgb8, vertex_colours,
 };
+use crate::solution::Radiosity;
 use crate::study::Record;
 
 /// Colours along a drawn bar.
@@ -33,7 +34,7 @@ pub struct ViewFigures {
 /// One picture with its words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// `reference`, `candidate`, `difference`, `relative`, `std_err` or `z`.
+    /// `reference`, `candidate`, `difference`, `relative`, `std_err`, `z`, `reference-smooth` or `candidate-smooth`.
     pub kind: &'static str,
     /// Title.
     pub title: &'static str,
@@ -74,8 +75,16 @@ struct Plate {
     kind: &'static str,
     title: &'static str,
     caption: String,
-    palette: Vec<Option<LinearRgb>>,
+    fill: Fill,
     bar: Option<ColourBar>,
+}
+
+/// How the patches are filled.
+enum Fill {
+    /// One colour each.
+    Flat(Vec<Option<LinearRgb>>),
+    /// Shaded between colours at the vertices.
+    Smooth(Vec<LinearRgb>),
 }
 
 /// All pictures of a record, one set for each view.
@@ -87,29 +96,33 @@ pub fn figures(record: &Record, views: &[View]) -> Result<Vec<ViewFigures>, Repo
         return Ok(Vec::new());
     }
     check_shape(record)?;
-    let plates = plates(record);
+    let mesh = Mesh::of_patches(&record.stage);
+    let plates = plates(record, &mesh);
     let stems = stems(views);
     let view = |(v, stem): (&View, String)| ViewFigures {
         camera: v.visibility.camera().name.clone(),
         stem,
         fitted: v.fitted,
-        figures: plates.iter().map(|p| print(p, &v.visibility)).collect(),
+        figures: plates.iter().map(|p| print(p, &v.visibility, &mesh)).collect(),
         marks: marks(record, &v.visibility),
     };
     Ok(views.iter().zip(stems).map(view).collect())
 }
 
-fn print(plate: &Plate, visibility: &Visibility) -> Figure {
+fn print(plate: &Plate, visibility: &Visibility, mesh: &Mesh) -> Figure {
     Figure {
         kind: plate.kind,
         title: plate.title,
         caption: plate.caption.clone(),
-        raster: paint(visibility, &plate.palette),
+        raster: match &plate.fill {
+            Fill::Flat(palette) => paint(visibility, palette),
+            Fill::Smooth(colours) => paint_smooth(visibility, mesh, colours),
+        },
         bar: plate.bar.clone(),
     }
 }
 
-fn plates(record: &Record) -> Vec<Plate> {
+fn plates(record: &Record, mesh: &Mesh) -> Vec<Plate> {
     let (stage, photometry) = (&record.stage, &record.stage.photometry);
     let areas = stage.areas();
     let reference = luminance(photometry, &record.reference);
@@ -119,7 +132,8 @@ fn plates(record: &Record) -> Vec<Plate> {
     let noise = luminance_std_err(photometry, &record.reference);
     let z = tested(record)
         .unwrap_or_else(|| in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution)));
-    let mut all = natural(record, &reference, &areas);
+    let exposure = exposure(record, &reference, &areas);
+    let mut all = natural(record, &exposure);
     let scale = Scale::symmetric(&wrong, &areas, 0.0);
     all.push(false_colour("difference", "Signed difference", WRONG, &wrong, scale, WATTS));
     let scale = Scale::symmetric(&relative, &areas, 0.0);
@@ -131,6 +145,7 @@ fn plates(record: &Record) -> Vec<Plate> {
         let what = format!("{IN_ERRORS}{}", beyond(record));
         all.push(false_colour("z", "Difference in standard errors", &what, &z, scale, ERRORS));
     }
+    all.extend(smooth(record, &exposure, mesh));
     all
 }
 
@@ -164,25 +179,46 @@ const WRONG: &str = "Solution minus reference: red where the solution is too bri
 const RELATIVE: &str = "The same as a share of what the reference has there: errors in dark corners show as clearly as \
                         those in the light.";
 const NOISE: &str = "How well the reference itself is known.";
+const SMOOTHED: &str = "Interpolated between vertices, as in Cohen and Greenberg (1985): how the solution would be shown. \
+                        Nothing is judged by it.";
 const IN_ERRORS: &str =
     "Differences against the noise: what stays within two or three is no evidence of an error in the solution.";
 
-/// Reference and solution as a camera would show them.
-fn natural(record: &Record, luminances: &[f64], areas: &[f64]) -> Vec<Plate> {
+/// One exposure for all pictures in natural colours.
+fn exposure(record: &Record, luminances: &[f64], areas: &[f64]) -> Exposure {
     let stage = &record.stage;
     let is_emitter: Vec<bool> = (0..stage.patch_count()).map(|i| stage.emission(i).iter().any(|e| *e > 0.0)).collect();
-    let exposure = Exposure::fit(&stage.photometry, luminances, areas, &is_emitter);
+    Exposure::fit(&stage.photometry, luminances, areas, &is_emitter)
+}
+
+/// Reference and solution as a camera would show them, one colour a patch.
+fn natural(record: &Record, exposure: &Exposure) -> Vec<Plate> {
     let shown = format!(
         "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
          the reflecting area stays below); lamps may burn out.",
         significant(exposure.white_luminance, 3)
     );
-    let palette = |r: &crate::solution::Radiosity| (0..r.len()).map(|i| Some(exposure.display(r.of(i)))).collect();
-    let plate =
-        |kind, title, caption, radiosity| Plate { kind, title, caption, palette: palette(radiosity), bar: None };
+    let palette = |r: &Radiosity| Fill::Flat((0..r.len()).map(|i| Some(exposure.display(r.of(i)))).collect());
+    let plate = |kind, title, caption, radiosity| Plate { kind, title, caption, fill: palette(radiosity), bar: None };
     vec![
         plate("reference", "Reference", shown, &record.reference),
         plate("candidate", "Solution", "The same exposure as the reference.".into(), &record.solution),
+    ]
+}
+
+/// The same, shaded between the vertices.
+fn smooth(record: &Record, exposure: &Exposure, mesh: &Mesh) -> Vec<Plate> {
+    let stencils = Stencils::of(mesh);
+    let plate = |kind, title, caption: &str, radiosity: &Radiosity| Plate {
+        kind,
+        title,
+        caption: caption.into(),
+        fill: Fill::Smooth(vertex_colours(&stencils, exposure, radiosity)),
+        bar: None,
+    };
+    vec![
+        plate("reference-smooth", "Reference, smoothed", SMOOTHED, &record.reference),
+        plate("candidate-smooth", "Solution, smoothed", "Smoothed alike; the same exposure.", &record.solution),
     ]
 }
 
@@ -205,7 +241,7 @@ fn false_colour(kind: &'static str, title: &'static str, what: &str, field: &Fie
         unit: unit.0,
     };
     let palette = field.values.iter().map(|v| v.map(|v| scale.colour(v))).collect();
-    Plate { kind, title, caption: format!("{what}{beyond}"), palette, bar: Some(bar) }
+    Plate { kind, title, caption: format!("{what}{beyond}"), fill: Fill::Flat(palette), bar: Some(bar) }
 }
 
 /// A mark's label; signed on scales that reach below zero.
@@ -252,7 +288,7 @@ mod tests {
     use crate::report::testing::record;
 
     #[test]
-    fn a_record_has_six_pictures_and_four_bars() {
+    fn a_record_has_eight_pictures_and_four_bars() {
         let stage = room();
         let shown = figures(&record(), &views(&tracer(&stage))).expect("figures");
         let kinds: Vec<_> = shown[0].figures.iter().map(|f| (f.kind, f.bar.is_some())).collect();
@@ -263,6 +299,8 @@ mod tests {
             ("relative", true),
             ("std_err", true),
             ("z", true),
+            ("reference-smooth", false),
+            ("candidate-smooth", false),
         ];
         assert_eq!(kinds, expected);
         let bar = shown[0].figures[2].bar.as_ref().expect("bar");
@@ -277,7 +315,7 @@ mod tests {
         let mut r = record();
         r.reference.std_err = None;
         let shown = figures(&r, &views(&tracer(&stage))).expect("figures");
-        assert_eq!(shown[0].figures.len(), 4);
+        assert_eq!(shown[0].figures.len(), 6);
     }
 
     #[test]

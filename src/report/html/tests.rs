@@ -46,6 +46,8 @@ fn the_folder_holds_page_data_pictures_and_layers() {
         "main-relative.png",
         "main-std_err.png",
         "main-z.png",
+        "main-reference-smooth.png",
+        "main-candidate-smooth.png",
         "main.exr",
     ];
     assert_eq!(names, expected);
@@ -171,7 +173,7 @@ fn the_page_asks_for_nothing_from_outside() {
     for outside in ["http://", "https://", "src=\"/", "@import", "url(http", "<link"] {
         assert!(!html.contains(outside), "{outside}");
     }
-    assert_eq!(html.matches("data:image/png;base64,").count(), 6);
+    assert_eq!(html.matches("data:image/png;base64,").count(), 8);
 }
 
 #[test]
