@@ -213,3 +213,51 @@ fn the_scenes_that_come_with_the_program_have_no_grave_finding() {
         }
     }
 }
+
+/// Published scenes beside the checkout, where there are any: read where they lie.
+fn published(file: &str) -> Option<Vec<Finding>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes").join(file);
+    if !path.is_file() {
+        eprintln!("{file} is not beside this checkout: left out");
+        return None;
+    }
+    let scene = open_scene(path.to_str()?, &SceneOptions::default()).expect("a readable scene");
+    Some(examine(&scene, &scene.at(0).expect("a stage")).expect("an examination"))
+}
+
+fn of(findings: &[Finding], kind: FindingKind) -> Vec<&Finding> {
+    findings.iter().filter(|f| f.kind == kind).collect()
+}
+
+#[test]
+fn the_published_cornell_box_in_millimetres() {
+    let Some(found) = published("tinyobj/cornell_box.obj") else { return };
+    // The footprints of the blocks are faces of the floor that look down onto it.
+    let contact = of(&found, FindingKind::Contact);
+    let area = |corners: [[f64; 2]; 4]| {
+        let cross = |k: usize| {
+            let (a, b) = (corners[k], corners[(k + 1) % 4]);
+            a[0] * b[1] - a[1] * b[0]
+        };
+        (0..4).map(cross).sum::<f64>().abs() / 2.0
+    };
+    let short = area([[130.0, 65.0], [82.0, 225.0], [240.0, 272.0], [290.0, 114.0]]);
+    let tall = area([[423.0, 247.0], [265.0, 296.0], [314.0, 456.0], [472.0, 406.0]]);
+    // The floor's patch and both footprints lose the same area.
+    assert!((value(contact[0]) - 2.0 * (short + tall)).abs() < 1e-3, "{}", value(contact[0]));
+    assert_eq!(of(&found, FindingKind::Units).len(), 1);
+    // The light hangs 0.8 mm under the ceiling, one-sided: its back is what the ceiling sees there.
+    assert!(of(&found, FindingKind::BacksSeen)[0].what.contains("light\" is seen by \"cornell_box/ceiling\""));
+    assert_eq!(of(&found, FindingKind::Dark).len(), 1, "the file's Ke and Kd = 1 are not usable");
+}
+
+#[test]
+fn the_published_boxes_of_mcguire() {
+    let Some(found) = published("mcguire/CornellBox-Original.obj") else { return };
+    assert_eq!(of(&found, FindingKind::Duplicate).len(), 2);
+    assert!(of(&found, FindingKind::BacksSeen).iter().any(|f| f.what.contains("reaches into the body")));
+    let Some(found) = published("mcguire/CornellBox-Sphere.obj") else { return };
+    let gap = of(&found, FindingKind::Gap);
+    // The missing front wall: its area over that of all the rest sees it only in a convex room; the bodies add to it.
+    assert!(gap.len() == 1 && (0.1..0.2).contains(&value(gap[0])), "{gap:#?}");
+}

@@ -52,7 +52,7 @@ fn the_folder_holds_page_data_pictures_and_layers() {
     ];
     assert_eq!(names, expected);
     assert_eq!(&files[3].bytes[..4], b"\x89PNG");
-    assert_eq!(&files[9].bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
+    assert_eq!(&files[11].bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
     let data: serde_json::Value = serde_json::from_slice(&files[1].bytes).expect("json");
     assert_eq!(data["format"], "etalon-record/1");
     assert_eq!(data["comparison"]["rms"]["value"], 0.013412);
