@@ -1,5 +1,6 @@
 //! Form factors by rays: who emits, how many rays, and the hit counts that come of it.
 
+mod aim;
 mod checkpoint;
 mod counts;
 mod emitter;

@@ -4,23 +4,21 @@
 //! unfinished work to go on from. In it: `lock` (held while the process lives, with its number), `journal`, `new`
 //! (the folder under construction) and `old` (what it replaces, where two folders cannot change places in one step).
 
+mod lock;
+
+pub use lock::end_claims;
+pub(super) use lock::is_at;
+
 use super::unfinished::Unfinished;
 use super::{FileError, Files};
-use std::collections::BTreeSet;
-use std::fs::{self, File, TryLockError};
+use lock::{LOCK, Locked, lock, release};
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
-const LOCK: &str = "lock";
 const JOURNAL: &str = "journal";
 const NEW: &str = "new";
 const OLD: &str = "old";
-/// Attempts to lock a file that others remove at the same moment.
-const ATTEMPTS: usize = 20;
-
-/// Working folders of this process.
-static CLAIMED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// The sole right to write a folder; ends when dropped, or with the process.
 #[derive(Debug)]
@@ -74,19 +72,30 @@ impl Claim {
     /// # Errors
     /// If a file cannot be written. The target is as it was.
     pub fn publish(self, files: &Files) -> Result<(), FileError> {
-        let failed = |e: io::Error| unwritable(&self.named, &self.target, &e);
         check_replaceable(&self.named, self.marker)?;
-        let new = self.part.join(NEW);
-        let (unfinished, ()) =
-            Unfinished::create(|| fs::create_dir(&new).map(|()| (new.clone(), ()))).map_err(failed)?;
-        let written = files.iter().try_for_each(|(name, bytes)| write_through(&new.join(name), bytes));
-        let published = written.and_then(|()| unfinished.finish(|| self.put_in_place(&new)));
-        if let Err(e) = published {
-            let _ = fs::remove_dir_all(&new);
-            return Err(failed(e));
-        }
+        let published = match self.try_publish(files) {
+            Err(e) if e.kind() == io::ErrorKind::StorageFull && self.make_room(files) => self.try_publish(files),
+            result => result,
+        };
+        published.map_err(|e| unwritable(&self.named, &self.target, &e))?;
         let _ = fs::remove_file(self.journal());
         Ok(())
+    }
+
+    fn try_publish(&self, files: &Files) -> io::Result<()> {
+        let new = self.part.join(NEW);
+        let (unfinished, ()) = Unfinished::create(|| fs::create_dir(&new).map(|()| (new.clone(), ())))?;
+        let written = files.iter().try_for_each(|(name, bytes)| write_through(&new.join(name), bytes));
+        written
+            .and_then(|()| unfinished.finish(|| self.put_in_place(&new)))
+            .inspect_err(|_| drop(fs::remove_dir_all(&new)))
+    }
+
+    /// Gives up the journal if that surely makes room: a result that is stored is worth more than a promise of it.
+    fn make_room(&self, files: &Files) -> bool {
+        let needed: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
+        let journal = File::options().write(true).open(self.journal());
+        journal.is_ok_and(|f| f.metadata().is_ok_and(|m| m.len() > 2 * needed as u64) && f.set_len(0).is_ok())
     }
 
     fn put_in_place(&self, new: &Path) -> io::Result<()> {
@@ -122,25 +131,7 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
-        leave(&self.part);
-        claimed.remove(&self.part);
-        self.lock.take();
-    }
-}
-
-/// Ends all claims of a program that is about to die, as dropping them would; no other can begin.
-pub fn end_claims() {
-    let claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
-    claimed.iter().for_each(|part| leave(part));
-    std::mem::forget(claimed);
-}
-
-/// Removes the working folder, unless there is a journal in it.
-fn leave(part: &Path) {
-    if !part.join(JOURNAL).exists() {
-        let _ = fs::remove_file(part.join(LOCK));
-        let _ = fs::remove_dir(part);
+        release(&self.part, self.lock.take());
     }
 }
 
@@ -214,70 +205,6 @@ fn unwritable(named: &Path, target: &Path, e: &io::Error) -> FileError {
         _ => "choose another place",
     };
     FileError::new(named, format!("cannot be written in {folder}: {e}")).mend(mend)
-}
-
-enum Locked {
-    Held(File),
-    ByAnother(Option<String>),
-    Unsupported,
-}
-
-/// Locks the working folder, which is made where it is missing.
-fn lock(part: &Path) -> io::Result<Locked> {
-    let mut claimed = CLAIMED.lock().unwrap_or_else(PoisonError::into_inner);
-    let locked = try_lock(part)?;
-    if !matches!(locked, Locked::ByAnother(_)) {
-        claimed.insert(part.into());
-    }
-    Ok(locked)
-}
-
-fn try_lock(part: &Path) -> io::Result<Locked> {
-    let path = part.join(LOCK);
-    for _ in 0..ATTEMPTS {
-        match fs::create_dir(part) {
-            Err(e) if e.kind() != io::ErrorKind::AlreadyExists => return Err(e),
-            _ => {}
-        }
-        let file = match File::options().read(true).write(true).create(true).truncate(false).open(&path) {
-            // Its owner has just removed it.
-            Err(e) if e.kind() == io::ErrorKind::NotFound => continue,
-            file => file?,
-        };
-        match file.try_lock() {
-            Ok(()) if is_at(&file, &path) => return note_owner(file).map(Locked::Held),
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let pid = fs::read_to_string(&path).ok().map(|p| p.trim().to_string()).filter(|p| !p.is_empty());
-                return Ok(Locked::ByAnother(pid));
-            }
-            Err(TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => return Ok(Locked::Unsupported),
-            Err(TryLockError::Error(e)) => return Err(e),
-        }
-    }
-    Ok(Locked::ByAnother(None))
-}
-
-fn note_owner(mut file: File) -> io::Result<File> {
-    file.set_len(0)?;
-    writeln!(file, "{}", std::process::id())?;
-    Ok(file)
-}
-
-/// True if the open file is still the one at the path, and not one that its last owner has removed.
-#[cfg(unix)]
-pub(super) fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let identity = |m: fs::Metadata| (m.dev(), m.ino());
-    match (file.metadata(), fs::metadata(path)) {
-        (Ok(open), Ok(there)) => identity(open) == identity(there),
-        _ => false,
-    }
-}
-
-#[cfg(not(unix))]
-pub(super) fn is_at(_: &File, path: &Path) -> bool {
-    path.exists()
 }
 
 fn write_through(path: &Path, bytes: &[u8]) -> io::Result<()> {

@@ -51,14 +51,20 @@ impl Writer {
         }
     }
 
-    /// Appends frames and waits until they are on the disk. After a failure the file ends where it ended before.
+    /// Appends frames and waits until they are on the disk. After a failure the file ends where it ended before; a
+    /// file without any frame is removed.
     fn append(&mut self, frames: &[Frame]) -> io::Result<()> {
         if frames.is_empty() {
             return Ok(());
         }
         let result = self.try_append(frames);
         if result.is_err() {
-            self.file.take().map(|f| f.set_len(self.end)).transpose()?;
+            let file = self.file.take();
+            if self.frames == 0 {
+                let _ = std::fs::remove_file(&self.path);
+            } else if let Some(file) = file {
+                file.set_len(self.end)?;
+            }
         }
         result
     }
