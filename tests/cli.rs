@@ -1,30 +1,10 @@
 //! The program as a script sees it: exit codes, messages, same bytes, quiet pipes.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::{etalon, json, ok, run};
 use serde_json::Value;
-use std::path::Path;
-
-fn etalon(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("etalon").expect("the binary");
-    command.current_dir(folder).env("NO_COLOR", "1");
-    command
-}
-
-fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
-    let output = etalon(folder).args(arguments.split_whitespace()).output().expect("it runs");
-    let text = |b: &[u8]| String::from_utf8_lossy(b).to_string();
-    (output.status.code().expect("a code"), text(&output.stdout), text(&output.stderr))
-}
-
-fn ok(folder: &Path, arguments: &str) -> String {
-    let (code, out, err) = run(folder, arguments);
-    assert_eq!(code, 0, "{arguments}\n{out}\n{err}");
-    out
-}
-
-fn json(folder: &Path, arguments: &str) -> Value {
-    serde_json::from_str(&ok(folder, &format!("{arguments} --json"))).expect("one JSON object")
-}
 
 /// A small closed scene with a small reference in `ref` and its exact candidate in `good.csv`.
 fn workshop() -> tempfile::TempDir {

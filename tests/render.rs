@@ -1,31 +1,13 @@
 //! `etalon render` as a script sees it: exit codes and mends, same bytes, what is in the pictures.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
+use program::{ok, refused};
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
-
-fn run(folder: &Path, arguments: &str) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("etalon").expect("the binary");
-    command.current_dir(folder).env("NO_COLOR", "1").args(arguments.split_whitespace());
-    let output = command.output().expect("it runs");
-    let text = |b: &[u8]| String::from_utf8_lossy(b).to_string();
-    (output.status.code().expect("a code"), text(&output.stdout), text(&output.stderr))
-}
-
-fn ok(folder: &Path, arguments: &str) -> String {
-    let (code, out, err) = run(folder, arguments);
-    assert_eq!(code, 0, "{arguments}\n{out}\n{err}");
-    out
-}
-
-/// The one message of a refusal.
-fn refused(folder: &Path, arguments: &str) -> String {
-    let (code, _, err) = run(folder, arguments);
-    assert_eq!(code, 2, "{arguments}\n{err}");
-    err
-}
 
 fn pixels(path: &Path) -> image::RgbaImage {
     image::open(path).expect("a PNG").into_rgba8()

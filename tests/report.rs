@@ -1,19 +1,12 @@
 //! The report folder from outside: complete, made again to the byte, sound where little is known.
 
-use assert_cmd::Command;
+#[path = "common/program.rs"]
+mod program;
+
+use program::{ok, refused};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
-
-fn etalon(here: &Path, arguments: &str) -> std::process::Output {
-    let mut command = Command::cargo_bin("etalon").expect("the program");
-    command.current_dir(here).args(arguments.split_whitespace()).output().expect("runs")
-}
-
-fn ok(here: &Path, arguments: &str) {
-    let out = etalon(here, arguments);
-    assert!(out.status.success(), "{arguments}: {}", String::from_utf8_lossy(&out.stderr));
-}
 
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entry = |e: std::io::Result<std::fs::DirEntry>| {
@@ -126,9 +119,7 @@ fn a_damaged_or_foreign_record_is_refused_with_its_mend() {
         ("{\"format\": \"etalon-record/1\"}".into(), "missing field"),
     ] {
         std::fs::write(&path, text).expect("writable");
-        let out = etalon(here, "report page");
-        let err = String::from_utf8_lossy(&out.stderr);
-        assert_eq!(out.status.code(), Some(2), "{err}");
+        let err = refused(here, "report page");
         assert!(err.contains(says) && err.contains("record.json") && err.contains("check --report"), "{err}");
     }
 }
