@@ -212,3 +212,28 @@ fn other_commands_leave_nothing() {
         assert_eq!(left, [""; 0], "{arguments}");
     }
 }
+
+/// Whoever began the run may be gone: its end of the pipes is closed, and the last words go nowhere.
+#[test]
+fn nobody_needs_to_listen() {
+    let place = tempfile::tempdir().expect("a folder");
+    for name in ["-INT", "-TERM"] {
+        let mut child = command(place.path(), "4194304", "1").spawn().expect("it runs");
+        drop(child.stderr.take());
+        wait_for_any(&[&place.path().join("ref.part/lock")]);
+        std::thread::sleep(Duration::from_millis(300));
+        signal(&child, name);
+        let begin = Instant::now();
+        let status = loop {
+            match child.try_wait().expect("a child") {
+                Some(status) => break status,
+                None if begin.elapsed() > Duration::from_secs(60) => {
+                    let _ = child.kill();
+                    panic!("{name}: it does not end");
+                }
+                None => std::thread::sleep(Duration::from_millis(10)),
+            }
+        };
+        assert_eq!(status.code(), Some(if name == "-INT" { 130 } else { 143 }));
+    }
+}

@@ -129,24 +129,34 @@ fn names_and_cameras_are_stored_and_count() {
     assert!(text.contains("already there"), "{text}");
 }
 
+/// A process that does not outlive a failed test.
+struct Ended(std::process::Child);
+
+impl Drop for Ended {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 #[test]
 fn two_at_once_do_not_mix() {
     let place = tempfile::tempdir().expect("a folder");
     let here = place.path();
     let long = "reference builtin:cornell-box -o ref --rays 4194304";
-    let mut first = etalon(here, long).stderr(Stdio::null()).stdout(Stdio::null()).spawn().expect("it runs");
+    let mut first = Ended(etalon(here, long).stderr(Stdio::null()).stdout(Stdio::null()).spawn().expect("it runs"));
     let begin = Instant::now();
-    while !fs::read_to_string(here.join("ref.part/lock")).is_ok_and(|t| t.trim() == first.id().to_string()) {
+    while !fs::read_to_string(here.join("ref.part/lock")).is_ok_and(|t| t.trim() == first.0.id().to_string()) {
         assert!(begin.elapsed() < Duration::from_secs(60), "the first does not begin");
         std::thread::sleep(Duration::from_millis(10));
     }
     let message = refused(here, "reference builtin:cornell-box -o ref --rays 256");
-    assert!(message.contains(&format!("number {}", first.id())) && message.contains("wait until"), "{message}");
+    assert!(message.contains(&format!("number {}", first.0.id())) && message.contains("wait until"), "{message}");
     let message = refused(here, "reference builtin:furnace -o ./ref/ --rays 256");
     assert!(message.contains("being written"), "{message}");
     // Death is enough: nobody has to remove a lock.
-    first.kill().expect("killed");
-    first.wait().expect("ended");
+    first.0.kill().expect("killed");
+    first.0.wait().expect("ended");
     let (_, message) = ok(here, "reference builtin:furnace -o ref --rays 256");
     assert!(!message.contains("going on"), "{message}");
     assert_eq!(names(here), ["ref"]);

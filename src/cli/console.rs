@@ -32,6 +32,11 @@ impl Console {
         let _ = writeln!(std::io::stdout(), "{line}");
     }
 
+    /// Prints a line on stderr; nobody listening is no reason to die of a panic.
+    pub fn tell(line: &str) {
+        let _ = writeln!(std::io::stderr(), "{line}");
+    }
+
     /// A result: `text` for people, `json` for programs.
     pub fn result(&self, text: &str, json: &Value) {
         if self.json {
@@ -63,8 +68,8 @@ impl Console {
             return;
         }
         match &failure.drawn {
-            Some(drawn) => eprintln!("{drawn}"),
-            None => eprintln!("error: {}", failure.message),
+            Some(drawn) => Self::tell(drawn),
+            None => Self::tell(&format!("error: {}", failure.message)),
         }
     }
 
@@ -74,7 +79,7 @@ impl Console {
     }
 
     fn above_bar(&self, line: &str) {
-        self.bar.lock().unwrap_or_else(std::sync::PoisonError::into_inner).suspend(|| eprintln!("{line}"));
+        self.bar.lock().unwrap_or_else(std::sync::PoisonError::into_inner).suspend(|| Self::tell(line));
     }
 
     fn shows_bars(&self) -> bool {

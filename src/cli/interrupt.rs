@@ -68,7 +68,9 @@ pub fn watch(console: Arc<Console>) {
         let Ok(mut signals) = register() else { return };
         let wait = move || {
             if let Some(signal) = signals.forever().next() {
-                low_level::exit(i32::from(end(signal, &console)));
+                // Whatever goes wrong in the last moments, they have to end.
+                let last = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| end(signal, &console)));
+                low_level::exit(last.map_or(128 + signal, i32::from));
             }
         };
         let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);

@@ -72,7 +72,7 @@ fn report_bug(json: bool) -> u8 {
     if json {
         Console::print_json(&failure.json());
     } else {
-        eprintln!("error: {}", failure.message);
+        Console::tell(&format!("error: {}", failure.message));
     }
     exit::BUG
 }

@@ -2,7 +2,7 @@ use super::*;
 
 fn written(path: &Path) -> Vec<Vec<u8>> {
     let (journal, _) = Journal::open(path, "key").unwrap();
-    let records: Vec<Vec<u8>> = (0..40u8).map(|k| vec![k; usize::from(k) * 7]).collect();
+    let records: Vec<Vec<u8>> = (0..40u8).map(|k| vec![k; usize::from(k) * 2]).collect();
     for (k, record) in records.iter().enumerate() {
         journal.append(k as u64 / 20, record);
         if k % 8 == 7 {
