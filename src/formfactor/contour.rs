@@ -46,6 +46,9 @@ fn edge_pair(e: &Edge, f: &Edge) -> (f64, f64) {
     if e.is_parallel_to(f) && ellipse(0.0, e.length, singular) < CLOSED_FORM_WITHIN {
         return parallel_pair(e, f);
     }
+    if let Some(pair) = coplanar_pair(e, f, cosine) {
+        return pair;
+    }
     let largest = Cell::new(0.0f64);
     let inner = |s: f64| {
         let (value, size) = log_potential(e, s, f);
@@ -81,6 +84,21 @@ fn parallel_pair(e: &Edge, f: &Edge) -> (f64, f64) {
     let along = |p: DVec3, q: DVec3| second_antiderivative((p - q).dot(f.direction), h);
     let terms = [along(e.to, f.from), -along(e.from, f.from), -along(e.to, f.to), along(e.from, f.to)];
     (terms.iter().sum(), terms.iter().map(|t: &f64| t.abs()).sum())
+}
+
+/// The same for edges whose lines cross. With s and t measured from the crossing, `ln r` scales with both: Euler's
+/// theorem takes the area integral to the rim, where it is the closed inner integral.
+fn coplanar_pair(e: &Edge, f: &Edge, cosine: f64) -> Option<(f64, f64)> {
+    let (s, t) = e.lines_cross(f)?;
+    let ends = [
+        (s + e.length, log_potential(e, e.length, f)),
+        (-s, log_potential(e, 0.0, f)),
+        (t + f.length, log_potential(f, f.length, e)),
+        (-t, log_potential(f, 0.0, e)),
+    ];
+    let sum: f64 = ends.iter().map(|(arm, (value, _))| arm * value).sum();
+    let size: f64 = ends.iter().map(|(arm, (_, size))| (arm * size).abs()).sum();
+    Some((0.5 * cosine * (sum - e.length * f.length), (cosine * size).abs()))
 }
 
 /// K with `K'' = ln sqrt(u^2 + h^2) + 1` in u.

@@ -6,6 +6,12 @@ use crate::math::DVec3;
 /// Sine of the angle below which two edges count as parallel: a few roundings of a direction.
 const PARALLEL: f64 = 4e-15;
 
+/// Distance of two lines below which they cross, for an extent near 1.
+const TOUCHING: f64 = 1e-15;
+
+/// Crossings further away than this many lengths of the shorter edge cost digits.
+const FURTHEST_CROSSING: f64 = 8.0;
+
 /// An oriented edge.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Edge {
@@ -68,6 +74,25 @@ impl Edge {
         } else {
             self.length + b.dot(self.direction)
         }
+    }
+
+    /// Where the lines of two edges cross, as abscissae of the first vertices from there, if they do to rounding and
+    /// not too far away for the digits.
+    pub fn lines_cross(&self, other: &Self) -> Option<(f64, f64)> {
+        let normal = self.direction.cross(other.direction);
+        let squared = normal.length_squared();
+        let ends = [(self.from, other.from), (self.from, other.to), (self.to, other.from), (self.to, other.to)];
+        let offset =
+            ends.map(|(p, q)| q - p).into_iter().min_by(|v, w| v.length_squared().total_cmp(&w.length_squared()))?;
+        if offset.dot(normal).powi(2) > TOUCHING * TOUCHING * squared {
+            return None;
+        }
+        // From the nearest ends: a common vertex is found exactly.
+        let nearest = ends.iter().position(|(p, q)| *q - *p == offset)?;
+        let s = if nearest < 2 { 0.0 } else { self.length } + offset.cross(other.direction).dot(normal) / squared;
+        let t = if nearest % 2 == 0 { 0.0 } else { other.length } + offset.cross(self.direction).dot(normal) / squared;
+        let arm = FURTHEST_CROSSING * self.length.min(other.length);
+        (s.abs() <= arm + self.length && t.abs() <= arm + other.length).then_some((-s, -t))
     }
 
     /// The squared distance to the line of `other` is `gap^2 + sine^2 (s - at)^2`: its complex zeros.
