@@ -400,8 +400,8 @@ const COMMAND_LINES: &[(&str, &[&str])] = &[
     ("solve plates.toml --method gather -o ref", &["ref", "ending"]),
     ("scene patches plates.toml -o no/p.csv", &["no/p.csv", "no folder"]),
     ("scene check nowhere.toml", &["nowhere.toml"]),
-    ("report nowhere", &["run.json", "check --report"]),
-    ("report page", &["page/run.json", "line 1"]),
+    ("report nowhere", &["record.json", "check --report"]),
+    ("report page", &["page/record.json", "missing field"]),
 ];
 
 #[test]
@@ -414,7 +414,7 @@ fn broken_command_lines() {
     }
     fs::write(here.join("notes/thesis.tex"), "x").expect("writable");
     fs::write(here.join("taken.part/thesis.tex"), "x").expect("writable");
-    fs::write(here.join("page/run.json"), "{\"format\": \"etalon-run/1\"}").expect("writable");
+    fs::write(here.join("page/record.json"), "{\"format\": \"etalon-record/1\"}").expect("writable");
     let wrong: Vec<String> = COMMAND_LINES.iter().flat_map(|(line, says)| refusal(here, line, says)).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
