@@ -214,7 +214,7 @@ fn mistakes_are_refused_with_the_mend_and_leave_nothing_behind() {
         ("render furnace.csv -o out.png", "render SCENE --solution furnace.csv"),
         ("render builtin:cornell-box --solution furnace.csv -o out.png", "bands"),
         ("render builtin:furnace --solution furnace.csv -o out.jpg", ".png"),
-        ("render builtin:furnace --solution furnace.csv -o nowhere/out.png", "make it first"),
+        ("render builtin:furnace --solution furnace.csv -o nowhere/out.png", "create it first"),
         ("render builtin:furnace --solution furnace.csv --camera x -o out.png", "leave --camera out"),
         (
             "render builtin:furnace --solution furnace.csv --quantity std-err --style smooth -o out.png",
