@@ -205,7 +205,7 @@ proptest! {
     }
 
     #[test]
-    fn quadrature_agrees_where_all_is_smooth(a in polygon(0.0), b in polygon(0.0), far in 3.0..40.0f64, way in direction()) {
+    fn quadrature_agrees_where_all_is_smooth(a in polygon(0.01), b in polygon(0.01), far in 3.0..40.0f64, way in direction()) {
         let b: Vec<DVec3> = b.iter().map(|p| *p + way * far).collect();
         let (na, nb) = (unit_normal(&a), unit_normal(&b));
         let faces = |p: &[DVec3], q: &[DVec3], n: DVec3| q.iter().all(|y| (*y - p[0]).dot(n) > 0.0);

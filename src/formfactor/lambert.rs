@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 const ON_PLANE: f64 = 1e-15;
 
 /// Form factor from a differential area to a convex planar polygon, nothing standing between: the share (0 to 1) of
-/// the light leaving `point` diffusely about the unit vector `normal` that arrives on the polygon's front.
+/// the light leaving `point` diffusely about `normal` (of any length) that arrives on the polygon's front.
 ///
 /// Lambert's formula: `1/(2 pi) sum_i angle_i (unit normal of the triangle of edge i and the point) . normal`, over
 /// the part of the polygon above the horizon of `normal` (Lambert, *Photometria*, 1760; the closed form of equation 4
@@ -36,6 +36,7 @@ pub fn point_to_polygon(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     if !(point.is_finite() && normal.is_finite() && polygon.iter().all(|p| p.is_finite())) {
         return f64::NAN;
     }
+    let normal = normal.normalize_or_zero();
     // Seen from the point: differences are what the formula lives on.
     let seen: Vec<DVec3> = polygon.iter().map(|p| *p - point).collect();
     let reach = seen.iter().map(|p| p.length()).fold(0.0, f64::max);

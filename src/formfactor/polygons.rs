@@ -27,7 +27,9 @@ const NEIGHBOURHOOD: f64 = 8.0;
 /// off first. Vertices counter-clockwise seen from the front; any unit of length; the polygons may stand anywhere,
 /// share edges and touch.
 ///
-/// Accurate to 1e-12 absolute; beyond a few diameters also to 1e-9 relative. Polygons in one plane (within 1e-14 of
+/// Accurate to 1e-12 absolute, and to 1e-9 relative down to factors of 1e-6 near and of any size far away. Where the
+/// planes cross within the polygons at a tiny angle t, where they cross is only known to 1e-16 / t, and so is the
+/// result. Polygons in one plane (within 1e-14 of
 /// the pair's extent), facing away, or degenerate (fewer than three vertices, no area): 0. Coordinates that are not
 /// finite: NaN. Same inputs, same bits; `A_a F_ab` and `A_b F_ba` agree to rounding.
 ///
