@@ -1,6 +1,6 @@
 //! The scene doctor: what is wrong with a scene, or costly, or merely worth knowing.
 //!
-//! Bad geometry gives confident nonsense: a floor upside down heats the house. The doctor reads the [`Skin`] of a
+//! Bad geometry gives confident nonsense: a floor upside down heats the house. The doctor reads the skin of a
 //! scene (which edges are joined, which are free) and casts a million rays of its own in double precision; what
 //! both say together becomes [`Finding`]s with place, consequence and mend. Same scene, same findings, on any
 //! machine.
