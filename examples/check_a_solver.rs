@@ -1,12 +1,12 @@
 //! A solver of one's own, held against the judge: what a test in its repository would do.
 //!
-//! `cargo run --release --example check_a_solver` solves the refined cube twice by simple iteration, once with
-//! enough bounces and once with one too few, and prints both verdicts.
+//! `cargo run --release --example check_a_solver` solves an L-shaped room twice by simple iteration, once with enough
+//! bounces and once with one, and prints both verdicts.
 
 use etalon::{Limits, Radiosity, Reference, ReferenceOptions, Stage, Verdict, assert_verdict, open_scene};
 
-/// The solver under test: form factors by sampling one point at the middle of each patch, then `bounces` sweeps.
-/// Middles are crude where patches touch, which is just what the judge is to tell.
+/// The solver under test: form factors from the middles of the patches, nothing between them, then `bounces` sweeps.
+/// Middles are crude where patches touch, and the room's corner does stand between: the judge says how much it matters.
 fn my_solver(stage: &Stage, bounces: usize) -> Radiosity {
     let n = stage.patch_count();
     let middle = |i: usize| stage.patches[i].region.centroid().expect("a patch that takes part");
