@@ -154,6 +154,17 @@ fn nothing_emits() {
 }
 
 #[test]
+fn a_lamp_that_a_board_hides() {
+    let found = findings("hidden-lamp");
+    let dark = of(&found, FindingKind::Dark);
+    assert!(
+        dark.len() == 1 && dark[0].severity == Severity::Warning && dark[0].place.surfaces == ["lamp"],
+        "{dark:#?}"
+    );
+    assert!((value(of(&found, FindingKind::Overlap)[0]) - 0.04).abs() < 1e-12);
+}
+
+#[test]
 fn a_lamp_too_small_for_the_default_number_of_rays() {
     let f = only("many-rays", FindingKind::ManyRays, Severity::Note);
     let worst = f.place.patches[0] as usize;

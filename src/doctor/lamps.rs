@@ -23,20 +23,35 @@ pub(super) fn findings(patient: &Patient) -> Vec<Finding> {
     let emitters = patch_emitters(stage);
     let lamps: Vec<usize> = (0..emitters.len()).filter(|i| emitters[*i].is_some() && luminance(*i) > 0.0).collect();
     if lamps.is_empty() {
-        return vec![dark()];
+        return vec![dark(stage)];
     }
     let direct = direct_light(patient, &emitters, &lamps);
     many_rays(stage, &lamps, &direct, ambient(patient, &lamps)).into_iter().collect()
 }
 
-fn dark() -> Finding {
+/// No light: because nobody asked for any, or because the lamps are hidden.
+fn dark(stage: &Stage) -> Finding {
+    let mut hidden: Vec<String> = Vec::new();
+    for i in 0..stage.patch_count() {
+        let (lit, name) = (stage.emission(i).iter().any(|e| *e > 0.0), stage.surface_name(i));
+        if lit && hidden.last().is_none_or(|n| n != name) {
+            hidden.push(name.to_string());
+        }
+    }
+    let none = hidden.is_empty();
     Finding {
         kind: FindingKind::Dark,
-        severity: Severity::Note,
-        place: Place::default(),
-        what: "nothing emits: every radiosity is 0".into(),
+        severity: if none { Severity::Note } else { Severity::Warning },
+        what: match none {
+            true => "nothing emits: every radiosity is 0".into(),
+            false => format!("no light reaches the scene: {} would emit, but is covered or absent", names(&hidden)),
+        },
+        place: Place { surfaces: hidden, ..Place::default() },
         consequence: None,
-        mend: "give a material an emission, unless only form factors are wanted".into(),
+        mend: match none {
+            true => "give a material an emission, unless only form factors are wanted".into(),
+            false => "move the lamp off the plane it shares with another face, or put it first".into(),
+        },
     }
 }
 
