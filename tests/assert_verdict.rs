@@ -66,6 +66,10 @@ fn a_stored_reference_is_opened_again_until_the_scene_changes() {
     let second = Reference::open_or_compute(&path, &stage(), &options(1024)).expect("opened");
     assert_eq!(first.radiosity(), second.radiosity());
     let written = std::fs::metadata(path.join("reference.json")).expect("stored").modified().expect("a time");
+    // A target that the stored one has not reached is computed, however many rays that one has.
+    let sharp = options(16).target_error(0.5 * first.provenance().relative_error);
+    let better = Reference::open_or_compute(&path, &stage(), &sharp).expect("computed");
+    assert!(better.provenance().relative_error <= 0.5 * first.provenance().relative_error);
     let mut changed = stage();
     changed.materials.iter_mut().for_each(|m| m.reflectance.iter_mut().for_each(|r| *r *= 0.5));
     let third = Reference::open_or_compute(&path, &changed, &options(1024)).expect("computed again");

@@ -4,9 +4,10 @@ use super::scene::Silent;
 use super::{Check, Error, ReferenceOptions};
 use crate::io::{StoredReference, read_solution, write_folder};
 use crate::metrics::{Comparison, Limits};
+use crate::raycast::open_kernels;
 use crate::scene::Stage;
-use crate::solution::{Provenance, Radiosity, SelfCheck};
-use crate::study::{self, Against, Question, Receivers, Session, judge};
+use crate::solution::{Provenance, Radiosity, SelfCheck, TruthLevel};
+use crate::study::{self, Against, Question, Receivers, Session, falls_short, judge};
 use std::path::Path;
 use std::time::Instant;
 
@@ -43,22 +44,18 @@ impl Reference {
         Ok(Self { stored: StoredReference::read(folder.as_ref())?, seconds: 0.0 })
     }
 
-    /// Opens the reference in a directory if it belongs to this stage; else computes it and stores it there.
+    /// Opens the reference in a directory if it answers what is asked (scene, seed, kernel, rays or target error, a
+    /// self-check passed); else computes it and stores it there.
     ///
     /// # Errors
     /// As [`Reference::compute`] and [`Reference::save`].
     pub fn open_or_compute(folder: impl AsRef<Path>, stage: &Stage, options: &ReferenceOptions) -> Result<Self, Error> {
-        let suffices = |r: &Self| {
-            let p = &r.stored.provenance;
-            r.stored.scene_hash == stage.hash()
-                && p.seed == options.options.seed
-                && p.randomisations == options.plan().randomisations
-                && p.rays_per_patch >= options.plan().rays
-        };
-        if let Ok(known) = Self::open(folder.as_ref())
-            && suffices(&known)
-        {
-            return Ok(known);
+        if let Ok(known) = Self::open(folder.as_ref()) {
+            let kernels = open_kernels(options.kernel, stage)?;
+            let kernel = kernels.kernel.info();
+            if falls_short(&known.stored, stage, &options.options, kernel, TruthLevel::PatchSystem).is_none() {
+                return Ok(known);
+            }
         }
         let fresh = Self::compute(stage, options)?;
         fresh.save(folder)?;
