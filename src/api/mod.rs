@@ -11,6 +11,7 @@ mod reference;
 mod scene;
 
 pub use check::Check;
+pub use crate::estimate::Estimator;
 pub use error::Error;
 pub use options::ReferenceOptions;
 pub use reference::Reference;

@@ -1,6 +1,6 @@
 //! What a reference may spend.
 
-use crate::estimate::Plan;
+use crate::estimate::{Estimator, Plan};
 use crate::raycast::KernelKind;
 use crate::reference::Options;
 use std::time::Duration;
@@ -11,10 +11,17 @@ use std::time::Duration;
 /// use etalon::ReferenceOptions;
 /// let options = ReferenceOptions::default().rays(65_536).seed(7);
 /// ```
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct ReferenceOptions {
     pub(super) options: Options,
     pub(super) kernel: KernelKind,
+}
+
+impl Default for ReferenceOptions {
+    fn default() -> Self {
+        let plan = Plan { estimator: Estimator::Auto, ..Plan::default() };
+        Self { options: Options { plan, seed: 0 }, kernel: KernelKind::default() }
+    }
 }
 
 impl ReferenceOptions {
@@ -39,6 +46,12 @@ impl ReferenceOptions {
     /// Stop when another doubling of the rays would not fit into this time.
     pub fn max_time(mut self, time: Duration) -> Self {
         self.options.plan.max_time = Some(time);
+        self
+    }
+
+    /// Where form factors come from; default: whatever is most accurate.
+    pub fn estimator(mut self, estimator: Estimator) -> Self {
+        self.options.plan.estimator = estimator;
         self
     }
 

@@ -150,7 +150,7 @@ pub struct RayArgs {
     /// Seed of the random streams.
     #[arg(long, default_value_t = 0, allow_hyphen_values = true)]
     pub seed: u64,
-    /// auto: whatever is most accurate; rays: hemisphere rays only (in this version both are the same).
+    /// auto: whatever is most accurate (closed forms and exact shadows, rays for the rest); rays: hemisphere rays only.
     #[arg(long, value_enum, default_value_t = Estimator::Auto)]
     pub estimator: Estimator,
 }
@@ -235,7 +235,7 @@ pub struct SolveArgs {
     /// Seed of ray-cast methods.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Estimator of ray-cast methods (in this version both are hemisphere rays).
+    /// Estimator of ray-cast methods: auto settles what it can without rays.
     #[arg(long, value_enum, default_value_t = Estimator::Auto)]
     pub estimator: Estimator,
     /// Level of the values.

@@ -1,16 +1,23 @@
-//! Form factors by rays: who emits, how many rays, and the hit counts that come of it.
+//! Form factors: pairs settled exactly, and rays for the rest: who emits, how many rays, the hit counts that come
+//! of it.
 
 mod aim;
+mod blend;
 mod checkpoint;
 mod counts;
 mod emitter;
 mod packed;
+mod pairs;
 mod plan;
 mod replicate;
 mod rows;
+mod settle;
 
+pub use blend::Blend;
 pub use checkpoint::{Block, Checkpoint, FinishedRow, NoCheckpoint};
 pub use counts::{Entry, HitCounts};
 pub use emitter::{Emitter, element_emitters, patch_emitters};
-pub use plan::{Plan, Reached};
+pub use pairs::{Coverage, PairFactors, PairPlan, PairTally, pair_form_factors};
+pub use plan::{Estimator, Plan, Reached};
 pub use rows::{Casting, cast, cast_on, row_batches, sample_batches};
+pub use settle::settle;

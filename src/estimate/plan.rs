@@ -14,11 +14,35 @@ pub struct Plan {
     pub target_error: Option<f64>,
     /// Stop when another doubling would not fit into this time.
     pub max_time: Option<Duration>,
+    /// How pairs are settled before rays are cast for the others.
+    #[serde(default)]
+    pub estimator: Estimator,
+}
+
+/// Where form factors come from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Estimator {
+    /// Whatever is most accurate: closed forms and exact shadows for pairs, rays for the rest.
+    Auto,
+    /// Hemisphere rays only.
+    #[default]
+    Rays,
+}
+
+impl Estimator {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Estimator::Auto => "auto",
+            Estimator::Rays => "rays",
+        }
+    }
 }
 
 impl Default for Plan {
     fn default() -> Self {
-        Self { rays: 16_384, randomisations: 16, target_error: None, max_time: None }
+        Self { rays: 16_384, randomisations: 16, target_error: None, max_time: None, estimator: Estimator::Rays }
     }
 }
 

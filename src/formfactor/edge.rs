@@ -6,6 +6,10 @@ use crate::math::DVec3;
 /// Sine of the angle below which two edges count as parallel: a few roundings of a direction.
 const PARALLEL: f64 = 4e-15;
 
+/// Sine of the angle from which on the crossing of two lines is known to the digits it is used with. Edges clipped
+/// along one line differ by rounding and cross anywhere.
+const CLEARLY_CROSSING: f64 = 1e-3;
+
 /// Distance of two lines below which they cross, for an extent near 1.
 const TOUCHING: f64 = 1e-15;
 
@@ -84,7 +88,7 @@ impl Edge {
         let ends = [(self.from, other.from), (self.from, other.to), (self.to, other.from), (self.to, other.to)];
         let offset =
             ends.map(|(p, q)| q - p).into_iter().min_by(|v, w| v.length_squared().total_cmp(&w.length_squared()))?;
-        if offset.dot(normal).powi(2) > TOUCHING * TOUCHING * squared {
+        if squared < CLEARLY_CROSSING * CLEARLY_CROSSING || offset.dot(normal).powi(2) > TOUCHING * TOUCHING * squared {
             return None;
         }
         // From the nearest ends: a common vertex is found exactly.

@@ -7,9 +7,11 @@ mod edge;
 mod far;
 mod gauss;
 mod lambert;
+mod obstructed;
 mod polygons;
 mod thin;
 
 pub use defect::{Groups, Reciprocity, reciprocity};
 pub use lambert::point_to_polygon;
+pub use obstructed::{Effort, Hidden, facing, hidden_exchange};
 pub use polygons::polygon_to_polygon;

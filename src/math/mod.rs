@@ -3,6 +3,7 @@
 mod boxes;
 mod frame;
 mod polygon;
+mod polytope;
 mod quad;
 mod sum;
 
@@ -13,5 +14,6 @@ pub use polygon::{
     area, area_vector, centroid, clip_to_half_space, convex_defect, diameter, intersect_convex, plane_defect,
     subtract_convex, unit_normal,
 };
+pub use polytope::{Plane, Polytope, PolytopeEdge};
 pub use quad::{Bilinear, triangle_cell, triangle_cell_corners};
 pub use sum::{Compensated, compensated_sum};

@@ -3,6 +3,7 @@
 //! Kernels answer one question only: which facet does a ray meet first? Where on it, on which side and in
 //! which patch is decided in double precision by the [`Tracer`].
 
+mod bodies;
 mod builtin;
 mod coplanar;
 mod embree;
@@ -14,10 +15,12 @@ mod kernel;
 mod locate;
 mod polygons;
 mod select;
+mod shaft;
 pub mod specimen;
 mod tracer;
 mod witness;
 
+pub use bodies::bodies;
 pub use builtin::BuiltinKernel;
 pub use coplanar::plane_groups;
 pub use embree::{EmbreeKernel, Packets};
@@ -25,5 +28,6 @@ pub use find::{Candidate, EMBREE_VARIABLE, Refused, Search, embree_folder, find_
 pub use kernel::{KernelError, KernelInfo, KernelKind, RayBatch, RayKernel};
 pub use locate::{BACK, ESCAPED};
 pub use select::{Kernels, open_kernel, open_kernels};
+pub use shaft::{Between, Shaft};
 pub use tracer::{Tally, TraceScratch, Tracer};
 pub use witness::{Agreement, Disagreement, agree};

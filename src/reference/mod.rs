@@ -1,6 +1,7 @@
 //! The judge: reference radiosities with standard errors, and the check of the judge itself.
 
 mod error;
+mod pair_check;
 mod patch_system;
 mod self_check;
 mod transport;

@@ -1,19 +1,24 @@
 //! Level (a): the patch-constant system, solved with ray-cast form factors.
 
 use super::ReferenceError;
+use super::pair_check;
 use super::self_check::{self, Evidence};
 use super::transport::LeaveOneOut;
-use crate::estimate::{Casting, Checkpoint, Entry, HitCounts, NoCheckpoint, Plan};
-use crate::estimate::{cast_on, element_emitters, patch_emitters};
+use crate::estimate::{Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, PairTally, Plan};
+use crate::estimate::{cast_on, element_emitters, patch_emitters, settle};
 use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
 use crate::scene::Stage;
 use crate::solution::{FormFactors, Provenance, Replicates, SelfCheck, TruthLevel};
 use crate::solver::{System, krylov};
+use crate::stats::normal_quantile;
 use std::cell::RefCell;
 
 /// Relative residual to which patch systems are solved.
 const RESIDUAL: f64 = 1e-12;
+
+/// Key of the stream that numerical errors are drawn from.
+const NUMERICAL_NOISE: u64 = 0x6e75_6d65;
 
 /// What a reference may spend.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,6 +60,8 @@ pub struct Reference {
     pub elements: Option<Replicates>,
     /// Mean form factors with standard errors.
     pub form_factors: FormFactors,
+    /// How pairs were settled without rays, where they were.
+    pub pairs: Option<PairTally>,
     /// How it was computed.
     pub provenance: Provenance,
     /// What it found about itself.
@@ -110,35 +117,47 @@ pub fn compute_on(
     let inputs = Inputs::of(stage);
     let stream = Stream::new(Role::Judge, options.seed);
     let emitters = patch_emitters(stage);
-    begin_casting(progress, "casting rays", &options.plan, emitters.iter().flatten().count());
+    let present = emitters.iter().flatten().count();
+    progress.begin("settling pairs", Some(present as u64));
+    let settled = settle(stage, &options.plan, &|patches| progress.advance(patches));
+    begin_casting(progress, "casting rays", &options.plan, present);
 
     // The radiosities of the last wave are kept: where the plan stops, they are the answer.
-    let solved: RefCell<Option<Result<Solved, ReferenceError>>> = RefCell::new(None);
+    let last: RefCell<Option<Result<Solved, ReferenceError>>> = RefCell::new(None);
     let error = |counts: &HitCounts| {
-        let result = solve(stage, &inputs, counts);
+        let result = solve(stage, &inputs, &blend(settled.as_ref(), counts), stream);
         let relative = result.as_ref().map_or(f64::NAN, |s| relative_noise(stage, &s.replicates));
-        *solved.borrow_mut() = Some(result);
+        *last.borrow_mut() = Some(result);
         relative
     };
     let casting =
         cast_on(tracer, &emitters, stream, &options.plan, &error, &|rays| progress.advance(rays), kept.patches);
-    let solved = solved.into_inner().expect("every plan has a wave")?;
+    let solved = last.into_inner().expect("every plan has a wave")?;
     let elements = if stage.has_elements() {
         Some(gather_elements(tracer, &inputs, &solved.replicates, &casting, stream, progress, kept.elements))
     } else {
         None
     };
     let counts = &casting.counts;
-    let self_check = self_check::run(stage, counts, &solved.mean, solved.residual, tracer.is_enclosure(), evidence);
+    let form_factors = blend(settled.as_ref(), counts).form_factors();
+    let mut self_check = self_check::run(stage, counts, &solved.mean, solved.residual, tracer.is_enclosure(), evidence);
+    if let Some(pairs) = &settled {
+        self_check.checks.extend(pair_check::of_pairs(stage, pairs, counts, &form_factors, tracer.is_enclosure()));
+    }
     Ok(Reference {
-        form_factors: counts.form_factors(),
+        form_factors,
         provenance: provenance(tracer, options, &casting),
+        pairs: settled.map(|s| s.tally),
         self_check,
         patches: solved.replicates,
         elements,
         missed_target: casting.reached.missed_target,
         waves: casting.waves,
     })
+}
+
+fn blend<'a>(settled: Option<&'a PairFactors>, counts: &'a HitCounts) -> Blend<'a> {
+    settled.map_or_else(|| Blend::of_rays(counts), |s| Blend::new(s, counts))
 }
 
 /// Refuses scenes and plans that are larger than the hit counters.
@@ -182,23 +201,43 @@ struct Solved {
 ///
 /// The solution depends on F in a curved way, so noise in F shifts its mean by a term of order 1/R. The
 /// jackknife pseudo-values `R B - (R - 1) B_without_r` cancel that term and are the replicates.
-fn solve(stage: &Stage, inputs: &Inputs, counts: &HitCounts) -> Result<Solved, ReferenceError> {
-    let areas = stage.areas();
+///
+/// Settled pairs are the same in every matrix; what their numerical errors do is added as noise of that size.
+fn solve(stage: &Stage, inputs: &Inputs, blend: &Blend, stream: Stream) -> Result<Solved, ReferenceError> {
+    let (areas, counts) = (stage.areas(), blend.counts());
     let r = counts.randomisations;
     let params = krylov::Params {
         tolerance: RESIDUAL,
         norm: crate::solver::Norm { weights: Some(&areas) },
         ..krylov::Params::default()
     };
-    let (mean, info) = krylov::solve(&inputs.system(), &counts.form_factors(), None, &params, |_, _| {})?;
+    let (mean, info) = krylov::solve(&inputs.system(), &blend.form_factors(), None, &params, |_, _| {})?;
     let emission = counts.repeated(&inputs.emission, inputs.bands);
     let reflectance = counts.repeated(&inputs.reflectance, inputs.bands);
     let system = System { emission: &emission, reflectance: &reflectance, bands: inputs.bands * usize::from(r) };
     let guess = counts.repeated(&mean, inputs.bands);
-    let (left_out, more) = krylov::solve(&system, &LeaveOneOut { counts }, Some(&guess), &params, |_, _| {})?;
+    let (left_out, more) = krylov::solve(&system, &LeaveOneOut { blend }, Some(&guess), &params, |_, _| {})?;
     let residual = info.residual.iter().chain(&more.residual).copied().fold(0.0, f64::max);
-    let replicates = pseudo_values(&mean, &left_out, inputs.bands, r);
+    let mut replicates = pseudo_values(&mean, &left_out, inputs.bands, r);
+    add_numerical_noise(&mut replicates, &mean, inputs, blend, stream.child(NUMERICAL_NOISE));
     Ok(Solved { mean, replicates, residual })
+}
+
+/// Spreads the replicates by what the numerical errors of settled pairs may do: independent noise of the size
+/// `rho sqrt(sum se^2 B^2)`, grown by the reflections that follow, as if each bound were a standard error.
+fn add_numerical_noise(replicates: &mut Replicates, mean: &[f64], inputs: &Inputs, blend: &Blend, stream: Stream) {
+    let noise = blend.settled_noise(mean, inputs.bands);
+    let brightest = inputs.reflectance.iter().copied().fold(0.0, f64::max);
+    let count = (replicates.count() as f64).sqrt();
+    for (r, values) in replicates.replicates.iter_mut().enumerate() {
+        let own = stream.child(r as u64);
+        for (k, v) in values.iter_mut().enumerate() {
+            let size = inputs.reflectance[k] * noise[k] / (1.0 - brightest);
+            if size > 0.0 {
+                *v += size * count * normal_quantile(own.unit(k as u64).max(f64::MIN_POSITIVE));
+            }
+        }
+    }
 }
 
 fn pseudo_values(mean: &[f64], left_out: &[f64], bands: usize, r: u16) -> Replicates {
@@ -244,6 +283,7 @@ fn gather_elements(
         randomisations: casting.counts.randomisations,
         target_error: None,
         max_time: None,
+        estimator: Estimator::Rays,
     };
     begin_casting(progress, "casting rays of elements", &plan, emitters.iter().flatten().count());
     let elements = cast_on(tracer, &emitters, stream, &plan, &|_| 0.0, &|rays| progress.advance(rays), kept);
@@ -283,5 +323,6 @@ fn provenance(tracer: &Tracer, options: &Options, casting: &Casting) -> Provenan
         instruction_set: kernel.instruction_set.clone(),
         enclosure: tracer.is_enclosure(),
         relative_error: casting.reached.relative_error,
+        estimator: options.plan.estimator.name().into(),
     }
 }

@@ -7,7 +7,7 @@ use crate::solution::{Check, SelfCheck};
 use crate::stats::t_p_value;
 
 /// False alarms allowed per run and statistical check.
-const FALSE_ALARM: f64 = 1e-6;
+pub(super) const FALSE_ALARM: f64 = 1e-6;
 /// Largest relative error of radiosity that leaks of a declared enclosure may cause.
 const LEAK_LIMIT: f64 = 1e-4;
 /// Share of re-traced rays, away from edges, on which two kernels may disagree.
@@ -50,7 +50,7 @@ pub(super) fn run(
     }
 }
 
-fn check(name: &str, passed: bool, finding: String) -> Check {
+pub(super) fn check(name: &str, passed: bool, finding: String) -> Check {
     Check { name: name.into(), passed, finding }
 }
 

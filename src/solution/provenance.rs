@@ -52,6 +52,14 @@ pub struct Provenance {
     pub enclosure: bool,
     /// One-sigma relative error of the radiosity in the norm of eq. 7.
     pub relative_error: f64,
+    /// Estimator: `auto` or `rays`, as on the command line.
+    #[serde(default = "rays")]
+    pub estimator: String,
+}
+
+/// What references say that were stored before there was a choice.
+fn rays() -> String {
+    "rays".into()
 }
 
 /// What the judge found about itself.

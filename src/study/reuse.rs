@@ -45,6 +45,9 @@ pub fn falls_short(
         return differs("seed", &p.seed.to_string(), &options.seed.to_string());
     }
     let plan = &options.plan;
+    if p.estimator != plan.estimator.name() {
+        return differs("the estimator", &p.estimator, plan.estimator.name());
+    }
     if p.randomisations != plan.randomisations {
         return differs("randomisations", &p.randomisations.to_string(), &plan.randomisations.to_string());
     }

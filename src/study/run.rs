@@ -1,7 +1,7 @@
 //! Running the judge and the candidates.
 
 use super::Session;
-use crate::estimate::{Plan, cast, element_emitters, patch_emitters};
+use crate::estimate::{cast, element_emitters, patch_emitters};
 use crate::io::StoredReference;
 use crate::methods::{Method, MethodError, MethodInfo, PatchVectors, gather, hemicube};
 use crate::raycast::agree;
@@ -122,7 +122,7 @@ fn per_element(session: &Session, request: &SolveRequest, patches: &Radiosity) -
     let rows = match request.method {
         Method::Hemicube(p) => hemicube::element_form_factors(stage, &p)?,
         Method::Gather(p) => {
-            let plan = Plan { rays: p.rays, randomisations: p.randomisations, ..Plan::default() };
+            let plan = p.plan();
             let stream = Stream::new(Role::Candidate, request.seed);
             cast(&session.tracer(), &element_emitters(stage), stream, &plan, &|_| 0.0, &|_| ()).counts.form_factors()
         }

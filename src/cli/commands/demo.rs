@@ -8,7 +8,7 @@ use crate::cli::args::Kernel;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::StateChoice;
-use crate::estimate::Plan;
+use crate::estimate::{Estimator, Plan};
 use crate::io::{BandNames, SolutionFormat, atomic, write_folder, write_solution};
 use crate::methods::Method;
 use crate::metrics::{Limits, Verdict};
@@ -37,7 +37,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
     let scene = inputs::scene(SCENE, None, console)?;
     let stage = inputs::stage_of(&scene, StateChoice::Final)?;
     let session = inputs::session(&stage, kind, console)?;
-    let options = Options { plan: Plan { rays: RAYS, ..Plan::default() }, seed: 0 };
+    let options = Options { plan: Plan { rays: RAYS, estimator: Estimator::Auto, ..Plan::default() }, seed: 0 };
     let (mut stored, _) = study::reference(&session, &options, console)?;
     stored.findings = inputs::findings(&scene, &stage, console)?;
     let judged_in = begin.elapsed().as_secs_f64();

@@ -4,7 +4,7 @@ use super::inputs;
 use crate::cli::args::FormFactorsArgs;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
-use crate::estimate::{Casting, cast, patch_emitters};
+use crate::estimate::{Blend, Casting, Estimator, HitCounts, PairFactors, Plan, cast, patch_emitters, settle};
 use crate::io::{MatrixFormat, write_form_factors};
 use crate::raycast::KernelKind;
 use crate::reference::{Progress, test_reciprocity};
@@ -24,25 +24,70 @@ pub fn run(args: &FormFactorsArgs, kernel: KernelKind, console: &Console) -> Res
     let stage = inputs::stage(&args.scene, console)?;
     crate::reference::check_size(&stage, &plan)?;
     let session = inputs::session(&stage, kernel, console)?;
-    let emitters = patch_emitters(&stage);
-    let rays =
-        plan.rays_per_randomisation() * u64::from(plan.randomisations) * emitters.iter().flatten().count() as u64;
-    console.begin("casting rays", plan.target_error.is_none().then_some(rays));
-    let stream = Stream::new(Role::Judge, args.rays.seed);
-    let casting =
-        cast(&session.tracer(), &emitters, stream, &plan, &|c| c.relative_error(), &|rays| console.advance(rays));
-    console.end();
-    let f = casting.counts.form_factors();
+    let work = Work::of(&session, &plan, args.rays.seed, console);
+    let f = work.blend().form_factors();
     inputs::write(&args.output, &write_form_factors(&f, format, false))?;
     if let (Some(path), Some(format)) = (&args.std_err, error_format) {
         inputs::write(path, &write_form_factors(&f, format, true))?;
     }
-    if casting.reached.missed_target {
-        console.notice(&format!("the target error was not reached: {:.2e}", casting.reached.relative_error));
+    if plan.target_error.is_some_and(|target| work.relative_error > target) {
+        console.notice(&format!("the target error was not reached: {:.2e}", work.relative_error));
     }
-    let json = summary(&session, &casting, &f, begin.elapsed().as_secs_f64());
-    console.result(&text(&session, &casting, &f, args), &json);
+    let json = summary(&session, &plan, &work, &f, begin.elapsed().as_secs_f64());
+    console.result(&text(&session, &work, &f, args), &json);
     Ok(exit::DONE)
+}
+
+/// Rays per patch that count once more what was settled without them, where no pair is left to rays.
+const WITNESS_RAYS: u64 = 256;
+
+/// Pairs settled without rays, and the rays.
+struct Work {
+    pairs: Option<PairFactors>,
+    casting: Casting,
+    /// Relative error of the whole matrix.
+    relative_error: f64,
+}
+
+impl Work {
+    fn of(session: &Session, plan: &Plan, seed: u64, console: &Console) -> Self {
+        let stage = session.stage();
+        let emitters = patch_emitters(stage);
+        let present = emitters.iter().flatten().count() as u64;
+        if plan.estimator == Estimator::Auto {
+            console.begin("settling pairs", Some(present));
+        }
+        let pairs = settle(stage, plan, &|patches| console.advance(patches));
+        let plan = match &pairs {
+            Some(p) if p.tally.left == 0 => {
+                Plan { rays: plan.rays.min(WITNESS_RAYS), target_error: None, max_time: None, ..*plan }
+            }
+            _ => *plan,
+        };
+        let rays = plan.rays_per_randomisation() * u64::from(plan.randomisations) * present;
+        console.begin("casting rays", plan.target_error.is_none().then_some(rays));
+        let stream = Stream::new(Role::Judge, seed);
+        let error = |counts: &HitCounts| blend(pairs.as_ref(), counts).relative_error();
+        let casting = cast(&session.tracer(), &emitters, stream, &plan, &error, &|rays| console.advance(rays));
+        console.end();
+        Self { relative_error: casting.reached.relative_error, pairs, casting }
+    }
+
+    fn blend(&self) -> Blend<'_> {
+        blend(self.pairs.as_ref(), &self.casting.counts)
+    }
+
+    /// Relative error after each wave, of exact points or of rays: what the errors of the result came from last.
+    fn waves(&self) -> &[(u64, f64)] {
+        match &self.pairs {
+            Some(p) if p.tally.left == 0 => &p.waves,
+            _ => &self.casting.waves,
+        }
+    }
+}
+
+fn blend<'a>(pairs: Option<&'a PairFactors>, counts: &'a HitCounts) -> Blend<'a> {
+    pairs.map_or_else(|| Blend::of_rays(counts), |p| Blend::new(p, counts))
 }
 
 /// Smallest, largest and mean row sum of the patches present.
@@ -58,11 +103,14 @@ fn max_std_err(f: &FormFactors) -> f64 {
     f.std_err.iter().flatten().copied().fold(0.0, f64::max)
 }
 
-fn summary(session: &Session, casting: &Casting, f: &FormFactors, seconds: f64) -> Value {
+fn summary(session: &Session, plan: &Plan, work: &Work, f: &FormFactors, seconds: f64) -> Value {
     let [min, max, mean] = row_sums(session, f);
+    let casting = &work.casting;
     let tally = casting.counts.tally;
     json!({
         "patches": f.n,
+        "estimator": plan.estimator,
+        "pairs": work.pairs.as_ref().map(|p| p.tally),
         "rays_per_patch": casting.reached.rays_per_patch,
         "randomisations": casting.counts.randomisations,
         "rays": tally.rays,
@@ -71,9 +119,9 @@ fn summary(session: &Session, casting: &Casting, f: &FormFactors, seconds: f64) 
         "instruction_set": session.kernel().instruction_set,
         "seconds": seconds,
         "stored": f.stored(),
-        "relative_error": casting.reached.relative_error,
-        "missed_target": casting.reached.missed_target,
-        "waves": casting.waves,
+        "relative_error": work.relative_error,
+        "missed_target": plan.target_error.is_some_and(|target| work.relative_error > target),
+        "waves": work.waves(),
         "max_std_err": max_std_err(f),
         "row_sums": { "min": min, "max": max, "mean": mean },
         "reciprocity": test_reciprocity(session.stage(), &casting.counts),
@@ -83,11 +131,21 @@ fn summary(session: &Session, casting: &Casting, f: &FormFactors, seconds: f64) 
     })
 }
 
-fn text(session: &Session, casting: &Casting, f: &FormFactors, args: &FormFactorsArgs) -> String {
+fn text(session: &Session, work: &Work, f: &FormFactors, args: &FormFactorsArgs) -> String {
     let [min, max, _] = row_sums(session, f);
+    let casting = &work.casting;
+    let pairs = work.pairs.as_ref().map_or(String::new(), |p| {
+        let [visible, unseen, partial, left] =
+            [p.tally.visible, p.tally.unseen, p.tally.partial, p.tally.left].map(inputs::thousands);
+        format!(
+            "pairs: {visible} visible (closed form), {unseen} proved unseen, {partial} perhaps hidden in part \
+             (exact shadows), {left} left to rays\n"
+        )
+    });
     format!(
         "{} x {} form factors, {} stored, written to {}\n\
-         {} rays per patch in {} randomisations ({} kernel): relative error {:.2e}, largest standard error {:.2e}\n\
+         {pairs}{} rays per patch in {} randomisations ({} kernel)\n\
+         relative error {:.2e}, largest standard error {:.2e}\n\
          row sums {min:.9} to {max:.9} ({} scene)",
         f.n,
         f.n,
@@ -96,7 +154,7 @@ fn text(session: &Session, casting: &Casting, f: &FormFactors, args: &FormFactor
         inputs::thousands(casting.reached.rays_per_patch),
         casting.counts.randomisations,
         session.kernel().name,
-        casting.reached.relative_error,
+        work.relative_error,
         max_std_err(f),
         if session.is_enclosure() { "closed" } else { "open" },
     )

@@ -1,11 +1,11 @@
 //! What several commands read: scenes, states, kernels, plans, matrices.
 
-use crate::cli::args::{Kernel, RayArgs, SceneArgs};
+use crate::cli::args::{self, Kernel, RayArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::exit::Failure;
 use crate::cli::values::StateChoice;
 use crate::doctor;
-use crate::estimate::Plan;
+use crate::estimate::{Estimator, Plan};
 use crate::io::atomic;
 use crate::io::scene::{SceneOptions, open_scene};
 use crate::raycast::KernelKind;
@@ -88,7 +88,16 @@ pub fn plan(rays: &RayArgs) -> Result<Plan, Failure> {
         randomisations: rays.randomisations,
         target_error: rays.target_error.map(|t| t.0),
         max_time: rays.max_time.map(|t| t.0),
+        estimator: estimator(rays.estimator),
     })
+}
+
+/// The estimator asked for.
+pub fn estimator(choice: args::Estimator) -> Estimator {
+    match choice {
+        args::Estimator::Auto => Estimator::Auto,
+        args::Estimator::Rays => Estimator::Rays,
+    }
 }
 
 /// Writes a result file.

@@ -5,7 +5,6 @@ use crate::cli::args::SolveArgs;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
-use crate::estimate::Plan;
 use crate::io::{BandNames, MatrixFormat, SolutionFormat, read_form_factors, write_form_factors, write_solution};
 use crate::methods::Method;
 use crate::raycast::KernelKind;
@@ -22,8 +21,7 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
     let stage = inputs::stage(&args.scene, console)?;
     let given = args.form_factors.as_deref().map(|f| read_form_factors(f, stage.patch_count())).transpose()?;
     if let (Method::Gather(p), None) = (&method, &given) {
-        let plan = Plan { rays: p.rays, randomisations: p.randomisations, ..Plan::default() };
-        check_size(&stage, &plan)?;
+        check_size(&stage, &p.plan())?;
     }
     let session = inputs::session(&stage, kernel, console)?;
     let per_element = args.per == PerLevel::Element;
@@ -60,6 +58,11 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
 /// The method with `--rays` filled in where `--method` leaves it open.
 fn method(args: &SolveArgs) -> Result<Method, Failure> {
     let mut method: Method = args.method.parse()?;
+    if let Method::Gather(p) = &mut method
+        && !args.method.contains("estimator=")
+    {
+        p.estimator = inputs::estimator(args.estimator);
+    }
     match (&mut method, args.rays) {
         (Method::Gather(p), Some(rays)) if !args.method.contains("rays=") => p.rays = rays,
         (Method::Hemicube(_), Some(_)) => {

@@ -4,7 +4,7 @@ use super::check::Asked;
 use super::inputs;
 use crate::cli::args::{CompareArgs, Kernel, OnInconclusive, Truth};
 use crate::cli::values::{PerLevel, StateChoice};
-use crate::estimate::Plan;
+use crate::estimate::{Estimator, Plan};
 use crate::reference::Options;
 use crate::scene::{Finding, Stage};
 use crate::solution::Provenance;
@@ -12,8 +12,6 @@ use crate::study::{Against, Part, Setting};
 
 /// Confidence without being asked.
 pub const CONFIDENCE: f64 = 0.95;
-/// The only estimator of references in this version.
-const ESTIMATOR: &str = "rays";
 
 /// What the scene doctor found when the reference was made.
 pub fn findings(against: &Against) -> Vec<Finding> {
@@ -103,7 +101,7 @@ pub fn of_reference(p: &Provenance, stage: &Stage) -> Vec<Setting> {
         Setting::new(of, "--rays", p.rays_per_patch, plan.rays),
         Setting::new(of, "--randomisations", p.randomisations, plan.randomisations),
         Setting::new(of, "--seed", p.seed, options.seed),
-        Setting::new(of, "--estimator", ESTIMATOR, ESTIMATOR),
+        Setting::new(of, "--estimator", &p.estimator, Estimator::Auto.name()),
         Setting::given(of, "--kernel", &p.kernel),
         Setting::given(of, "enclosure", p.enclosure),
     ]

@@ -1,0 +1,93 @@
+//! One matrix from two sources: pairs settled without rays, and hit counts for those that are left.
+
+use super::{Entry, HitCounts, PairFactors};
+use crate::solution::FormFactors;
+use rayon::prelude::*;
+
+/// Settled pairs beside the ray counts of the others.
+#[derive(Debug)]
+pub struct Blend<'a> {
+    settled: Option<&'a PairFactors>,
+    counts: std::borrow::Cow<'a, HitCounts>,
+}
+
+impl<'a> Blend<'a> {
+    /// Counts alone.
+    pub fn of_rays(counts: &'a HitCounts) -> Self {
+        Self { settled: None, counts: std::borrow::Cow::Borrowed(counts) }
+    }
+
+    /// Settled pairs and, of the counts, those of the pairs that are left.
+    pub fn new(settled: &'a PairFactors, counts: &HitCounts) -> Self {
+        let keep = |(row, left): (&Vec<Entry>, &Vec<u32>)| -> Vec<Entry> {
+            let is_left = |e: &&Entry| left.binary_search(&(e.patch() as u32)).is_ok();
+            if left.is_empty() { Vec::new() } else { row.iter().filter(is_left).copied().collect() }
+        };
+        let rows = counts.rows.par_iter().zip(&settled.left).map(keep).collect();
+        let kept = HitCounts { rows, active: counts.active.clone(), ..*counts };
+        Self { settled: Some(settled), counts: std::borrow::Cow::Owned(kept) }
+    }
+
+    /// The counts of the pairs left to rays.
+    pub fn counts(&self) -> &HitCounts {
+        &self.counts
+    }
+
+    /// Mean form factors with standard errors.
+    pub fn form_factors(&self) -> FormFactors {
+        let by_rays = self.counts.form_factors();
+        let Some(settled) = self.settled.map(|s| &s.form_factors) else { return by_rays };
+        let row = |i: usize| {
+            let entries = |f: &FormFactors| -> Vec<(u32, f64, f64)> {
+                let span = f.row_starts[i]..f.row_starts[i + 1];
+                let error = |k: usize| f.std_err.as_ref().map_or(0.0, |e| e[k]);
+                span.map(|k| (f.columns[k], f.values[k], error(k))).collect()
+            };
+            let mut row = entries(settled);
+            let rays = entries(&by_rays);
+            if !rays.is_empty() {
+                row.extend(rays);
+                row.sort_unstable_by_key(|e| e.0);
+            }
+            row
+        };
+        FormFactors::from_rows((0..self.counts.rows.len()).into_par_iter().map(row).collect())
+    }
+
+    /// sqrt(sum se^2) / sqrt(sum F^2) over the matrix.
+    pub fn relative_error(&self) -> f64 {
+        if self.settled.is_none() {
+            return self.counts.relative_error();
+        }
+        let f = self.form_factors();
+        let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let signal = norm(&f.values);
+        if signal == 0.0 { 0.0 } else { norm(f.std_err.as_deref().unwrap_or_default()) / signal }
+    }
+
+    /// `y = F x` with, for each r, the matrix that leaves out randomisation r. `width` is R times bands.
+    pub fn apply_leave_one_out(&self, x: &[f64], width: usize, y: &mut [f64]) {
+        self.counts.apply_leave_one_out(x, width, y);
+        let Some(settled) = self.settled.map(|s| &s.form_factors) else { return };
+        y.par_chunks_mut(width).enumerate().for_each(|(i, out)| {
+            for (j, f) in settled.row(i) {
+                out.iter_mut().zip(&x[j * width..]).for_each(|(o, x)| *o += f * x);
+            }
+        });
+    }
+
+    /// For every row `sqrt(sum_j se_ij^2 x_j^2)` over the settled pairs: what their numerical errors do to `F x`.
+    pub fn settled_noise(&self, x: &[f64], bands: usize) -> Vec<f64> {
+        let mut noise = vec![0.0; self.counts.rows.len() * bands];
+        let Some(f) = self.settled.map(|s| &s.form_factors) else { return noise };
+        let Some(errors) = &f.std_err else { return noise };
+        noise.par_chunks_mut(bands).enumerate().for_each(|(i, out)| {
+            for k in f.row_starts[i]..f.row_starts[i + 1] {
+                let source = &x[f.columns[k] as usize * bands..];
+                out.iter_mut().zip(source).for_each(|(o, x)| *o += (errors[k] * x).powi(2));
+            }
+            out.iter_mut().for_each(|o| *o = o.sqrt());
+        });
+        noise
+    }
+}

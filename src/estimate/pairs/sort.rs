@@ -1,0 +1,191 @@
+//! Sorting pairs: proved visible, proved unseen, perhaps hidden in part, or left to rays.
+
+use super::congruent::Congruent;
+use super::sides::{Side, sides};
+use super::{Coverage, PairPlan};
+use crate::formfactor::{facing, polygon_to_polygon};
+use crate::math::{Bounds, BoxTree, DVec3, Polytope};
+use crate::raycast::{Between, Shaft, bodies};
+use crate::scene::Stage;
+use rayon::prelude::*;
+
+/// What reaches into a shaft by less than this share of the scene's extent touches it.
+const TOUCHING: f64 = 1e-11;
+
+/// A pair that is seen wholly, were it not for some bodies.
+#[derive(Debug)]
+pub(super) struct Pair {
+    /// The patch with the lower side.
+    pub from: u32,
+    /// The other.
+    pub to: u32,
+    /// `A F` with nothing between, m^2.
+    pub open: f64,
+    /// Bodies that may stand between, by number; none where the pair is visible.
+    pub between: Vec<u32>,
+}
+
+/// All pairs of a stage, sorted.
+pub(super) struct Sorted {
+    /// What can hide.
+    pub bodies: Vec<Polytope>,
+    /// Pairs that exchange something with nothing between.
+    pub pairs: Vec<Pair>,
+    /// Pairs left to rays.
+    pub left: Vec<(u32, u32)>,
+    /// Pairs proved not to see each other.
+    pub unseen: u64,
+}
+
+/// Sorts all pairs. `progress` is told how many patches are done.
+pub(super) fn sort(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64) + Sync)) -> Sorted {
+    let bodies = bodies(stage);
+    let (lo, hi) = stage.bounds();
+    let touching = TOUCHING * (hi - lo).length();
+    let tree = BoxTree::new(bodies.iter().map(|b| Bounds::of(b.vertices()).grown(touching)).collect());
+    let scene = Scene { stage, sides: sides(stage), bodies, tree, touching, plan: *plan };
+    let of_side = |s: usize| {
+        let found = scene.side(s);
+        progress(scene.sides[s].patches.len() as u64);
+        found
+    };
+    let found: Vec<Vec<Found>> = (0..scene.sides.len()).into_par_iter().map(of_side).collect();
+    let mut sorted = Sorted { bodies: scene.bodies, pairs: Vec::new(), left: Vec::new(), unseen: 0 };
+    for part in found.into_iter().flatten() {
+        sorted.pairs.extend(part.pairs);
+        sorted.left.extend(part.left);
+        sorted.unseen += part.unseen;
+    }
+    sorted
+}
+
+/// Everything pairs are sorted by.
+struct Scene<'a> {
+    stage: &'a Stage,
+    sides: Vec<Side>,
+    bodies: Vec<Polytope>,
+    tree: BoxTree,
+    touching: f64,
+    plan: PairPlan,
+}
+
+/// What the pairs of one patch came to.
+#[derive(Default)]
+struct Found {
+    pairs: Vec<Pair>,
+    left: Vec<(u32, u32)>,
+    unseen: u64,
+}
+
+/// A later side, and what stands before it.
+struct Ahead {
+    side: usize,
+    /// `None`: left to rays.
+    between: Option<Between>,
+    alike: Option<Congruent>,
+}
+
+impl Scene<'_> {
+    /// The pairs of one side with all later sides, patch by patch.
+    fn side(&self, s: usize) -> Vec<Found> {
+        let side = &self.sides[s];
+        let (mut unseen, mut ahead) = (0, Vec::new());
+        for t in s + 1..self.sides.len() {
+            let other = &self.sides[t];
+            if self.plan.coverage == Coverage::Emitters && !side.emits && !other.emits {
+                ahead.push(Ahead { side: t, between: None, alike: None });
+                continue;
+            }
+            match self.between(&side.polygon, &other.polygon, None) {
+                None | Some(Between::Wall) => unseen += (side.patches.len() * other.patches.len()) as u64,
+                some => ahead.push(Ahead { side: t, between: some, alike: Congruent::of(side, other) }),
+            }
+        }
+        let mut found: Vec<Found> = side.patches.par_iter().map(|i| self.patch(*i, s, &ahead)).collect();
+        found.push(Found { unseen, ..Found::default() });
+        found
+    }
+
+    /// What stands between two polygons; `None` if neither lies before the other. `known`: no other body does.
+    fn between(&self, a: &[DVec3], b: &[DVec3], known: Option<&[u32]>) -> Option<Between> {
+        let (a, b) = facing(a, b)?;
+        let shaft = Shaft::new(&a, &b, self.touching);
+        if let Some(list) = known {
+            return Some(shaft.between(&self.bodies, list.iter().copied()));
+        }
+        let mut near = Vec::new();
+        self.tree.near(&Bounds::of(&a).joined(Bounds::of(&b)), |k| near.push(k));
+        near.sort_unstable();
+        Some(shaft.between(&self.bodies, near.into_iter()))
+    }
+
+    /// The pairs of one patch with the sides ahead.
+    fn patch(&self, i: u32, s: usize, ahead: &[Ahead]) -> Found {
+        let corners = &self.stage.patches[i as usize].corners;
+        let mut found = Found::default();
+        for a in ahead {
+            let other = &self.sides[a.side];
+            let Some(whole) = &a.between else {
+                found.left.extend(other.patches.iter().map(|j| (i, *j)));
+                continue;
+            };
+            let narrowed = match whole {
+                Between::Some(list) if self.sides[s].patches.len() > 1 && other.patches.len() > 1 => {
+                    self.between(corners, &other.polygon, Some(list))
+                }
+                all => Some(all.clone()),
+            };
+            for j in &other.patches {
+                let between = match &narrowed {
+                    Some(Between::Some(list)) => {
+                        self.between(corners, &self.stage.patches[*j as usize].corners, Some(list))
+                    }
+                    all => all.clone(),
+                };
+                self.put(i, *j, s, a, between, &mut found);
+            }
+        }
+        found
+    }
+
+    fn put(&self, i: u32, j: u32, s: usize, ahead: &Ahead, between: Option<Between>, found: &mut Found) {
+        let between = match between {
+            None | Some(Between::Wall) => {
+                found.unseen += 1;
+                return;
+            }
+            Some(Between::Nothing) => Vec::new(),
+            Some(Between::Some(few)) if few.len() > self.plan.most_bodies => {
+                found.left.push((i, j));
+                return;
+            }
+            Some(Between::Some(few)) => few,
+        };
+        let open = self.open(i, j, s, ahead);
+        if open > 0.0 {
+            found.pairs.push(Pair { from: i, to: j, open, between });
+        } else {
+            found.unseen += 1;
+        }
+    }
+
+    /// The exchange of a pair were nothing between, m^2.
+    fn open(&self, i: u32, j: u32, s: usize, ahead: &Ahead) -> f64 {
+        let of = |k: u32| &self.stage.patches[k as usize];
+        let closed = |i: u32, j: u32| {
+            let mut sum = 0.0;
+            for p in &of(i).region.pieces {
+                let area = crate::math::area(p);
+                sum += of(j).region.pieces.iter().map(|q| area * polygon_to_polygon(p, q)).sum::<f64>();
+            }
+            sum
+        };
+        match &ahead.alike {
+            Some(table) => {
+                let (first, second) = (&self.sides[s].patches, &self.sides[ahead.side].patches);
+                table.get(of(i), of(j), |p, q| closed(first[p], second[q]))
+            }
+            None => closed(i, j),
+        }
+    }
+}

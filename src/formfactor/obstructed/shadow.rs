@@ -1,0 +1,192 @@
+//! What of the target a point does not see: the shadows of convex bodies, cut out of one another exactly.
+
+use super::view::{Body, View};
+use crate::math::{DVec2, DVec3};
+
+/// Room for the polygons of one evaluation, used again and again.
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// Half-planes of each body's shadow.
+    shadows: Vec<Vec<HalfPlane>>,
+    part: Vec<DVec2>,
+    other: Vec<DVec2>,
+    pieces: Pieces,
+    next: Pieces,
+}
+
+/// `a u + b v + c >= 0`.
+#[derive(Clone, Copy)]
+struct HalfPlane {
+    a: f64,
+    b: f64,
+    c: f64,
+}
+
+impl HalfPlane {
+    fn at(&self, p: DVec2) -> f64 {
+        self.a * p.x + self.b * p.y + self.c
+    }
+}
+
+/// Convex polygons one after the other.
+#[derive(Default)]
+struct Pieces {
+    points: Vec<DVec2>,
+    ends: Vec<usize>,
+}
+
+impl Pieces {
+    fn clear(&mut self) {
+        self.points.clear();
+        self.ends.clear();
+    }
+
+    fn push(&mut self, polygon: &[DVec2]) {
+        self.points.extend_from_slice(polygon);
+        self.ends.push(self.points.len());
+    }
+
+    fn get(&self, k: usize) -> &[DVec2] {
+        let start = if k == 0 { 0 } else { self.ends[k - 1] };
+        &self.points[start..self.ends[k]]
+    }
+}
+
+impl View {
+    /// `2 pi` times the form factor from the point `x` of the domain to the part of the target that the bodies hide.
+    pub fn hidden(&self, x: DVec3, scratch: &mut Scratch) -> f64 {
+        scratch.shadows.resize_with(self.bodies.len(), Vec::new);
+        let mut sum = 0.0;
+        for (k, body) in self.bodies.iter().enumerate() {
+            let (before, rest) = scratch.shadows.split_at_mut(k);
+            let shadow = &mut rest[0];
+            body.shadow(x, shadow);
+            scratch.part.clear();
+            scratch.part.extend_from_slice(&self.target);
+            if shadow.is_empty() || !cut_to(&mut scratch.part, &mut scratch.other, shadow) {
+                shadow.clear();
+                continue;
+            }
+            scratch.pieces.clear();
+            scratch.pieces.push(&scratch.part);
+            for earlier in before.iter().filter(|s| !s.is_empty()) {
+                scratch.next.clear();
+                for piece in 0..scratch.pieces.ends.len() {
+                    let polygon = scratch.pieces.get(piece);
+                    subtract(polygon, earlier, &mut scratch.part, &mut scratch.other, &mut scratch.next);
+                }
+                std::mem::swap(&mut scratch.pieces, &mut scratch.next);
+            }
+            for piece in 0..scratch.pieces.ends.len() {
+                sum += self.lambert(x, scratch.pieces.get(piece));
+            }
+        }
+        sum
+    }
+
+    /// Lambert's sum over a polygon in the target's plane: `2 pi` times the form factor.
+    fn lambert(&self, x: DVec3, polygon: &[DVec2]) -> f64 {
+        let (foot, h, n) = (x.truncate(), x.z, self.normal);
+        let mut sum = 0.0;
+        let mut a = polygon[polygon.len() - 1] - foot;
+        for p in polygon {
+            let b = *p - foot;
+            let cross = DVec3::new(h * (b.y - a.y), h * (a.x - b.x), a.perp_dot(b));
+            let sine = cross.length();
+            if sine > 0.0 {
+                sum -= sine.atan2(a.dot(b) + h * h) * cross.dot(n) / sine;
+            }
+            a = b;
+        }
+        sum
+    }
+}
+
+impl Body {
+    /// Half-planes of the target's plane whose common part this body hides from `x`; none if it hides nothing.
+    fn shadow(&self, x: DVec3, out: &mut Vec<HalfPlane>) {
+        out.clear();
+        let mut seen = 0u64;
+        for (k, plane) in self.planes.iter().enumerate() {
+            if plane.height(x) > 0.0 {
+                seen |= 1 << (k & 63);
+            }
+        }
+        if seen == 0 {
+            return;
+        }
+        let inwards = self.centre - x;
+        for e in &self.edges {
+            if (seen >> (e.left & 63) & 1) == (seen >> (e.right & 63) & 1) {
+                continue;
+            }
+            let (a, b) = (self.vertices[e.ends[0] as usize] - x, self.vertices[e.ends[1] as usize] - x);
+            let mut normal = a.cross(b);
+            if normal.dot(inwards) < 0.0 {
+                normal = -normal;
+            }
+            out.push(HalfPlane { a: normal.x, b: normal.y, c: -normal.dot(x) });
+        }
+    }
+}
+
+/// Cuts a polygon to half-planes; false if nothing of it is left.
+fn cut_to(polygon: &mut Vec<DVec2>, other: &mut Vec<DVec2>, half_planes: &[HalfPlane]) -> bool {
+    for h in half_planes {
+        cut(polygon, h, 1.0, other);
+        std::mem::swap(polygon, other);
+        if polygon.len() < 3 {
+            return false;
+        }
+    }
+    true
+}
+
+/// The part of a polygon with `sign * h >= 0`.
+fn cut(polygon: &[DVec2], h: &HalfPlane, sign: f64, out: &mut Vec<DVec2>) {
+    out.clear();
+    let Some(last) = polygon.last() else { return };
+    let (mut a, mut ha) = (*last, sign * h.at(*last));
+    for p in polygon {
+        let (b, hb) = (*p, sign * h.at(*p));
+        if (ha > 0.0 && hb < 0.0) || (ha < 0.0 && hb > 0.0) {
+            out.push(a.lerp(b, ha / (ha - hb)));
+        }
+        if hb >= 0.0 {
+            out.push(b);
+        }
+        (a, ha) = (b, hb);
+    }
+}
+
+/// Appends the convex pieces of `polygon` outside of a shadow.
+fn subtract(
+    polygon: &[DVec2],
+    shadow: &[HalfPlane],
+    part: &mut Vec<DVec2>,
+    other: &mut Vec<DVec2>,
+    out: &mut Pieces,
+) {
+    // Most shadows miss most pieces: one half-plane with the piece on its far side tells.
+    if shadow.iter().any(|h| polygon.iter().all(|p| h.at(*p) <= 0.0)) {
+        out.push(polygon);
+        return;
+    }
+    let (points, ends) = (out.points.len(), out.ends.len());
+    part.clear();
+    part.extend_from_slice(polygon);
+    for h in shadow {
+        cut(part, h, -1.0, other);
+        if other.len() >= 3 {
+            out.push(other);
+        }
+        cut(part, h, 1.0, other);
+        std::mem::swap(part, other);
+        if part.len() < 3 {
+            out.points.truncate(points);
+            out.ends.truncate(ends);
+            out.push(polygon);
+            return;
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What can hide: the facets of a stage as convex bodies, closed solids in one piece.
+
+use crate::math::{DVec3, Polytope, unit_normal};
+use crate::scene::Stage;
+use std::collections::{BTreeMap, HashMap};
+
+/// Solids with more faces are taken face by face.
+const MOST_FACES: usize = 48;
+
+/// Corners closer than this share of the scene's extent are one.
+const SAME: f64 = 1e-9;
+
+/// All bodies of a stage: every facet is part of just one, but for facets that coincide back to back.
+pub fn bodies(stage: &Stage) -> Vec<Polytope> {
+    let loops = welded(stage);
+    let mut out = Vec::new();
+    for part in connected(&loops.faces) {
+        match solid(&loops, &part) {
+            Some(body) => out.push(body),
+            None => out.extend(part.iter().filter_map(|f| Polytope::flat(&loops.corners(*f)))),
+        }
+    }
+    out
+}
+
+/// Facets as loops of shared vertices.
+struct Loops {
+    vertices: Vec<DVec3>,
+    faces: Vec<Vec<u32>>,
+}
+
+impl Loops {
+    fn corners(&self, face: usize) -> Vec<DVec3> {
+        self.faces[face].iter().map(|v| self.vertices[*v as usize]).collect()
+    }
+}
+
+/// Joins corners that coincide; of facets that are the same polygon, one is left.
+fn welded(stage: &Stage) -> Loops {
+    let (lo, hi) = stage.bounds();
+    let cell = (SAME * (hi - lo).max_element()).max(f64::MIN_POSITIVE);
+    let key = |p: DVec3| ((p - lo) / cell).round().to_array().map(|x| x as i64);
+    let mut known: HashMap<[i64; 3], u32> = HashMap::new();
+    let mut loops = Loops { vertices: Vec::new(), faces: Vec::new() };
+    let mut sets = std::collections::HashSet::new();
+    for facet in &stage.facets {
+        let mut face: Vec<u32> = Vec::with_capacity(facet.vertices.len());
+        for p in &facet.vertices {
+            let next = loops.vertices.len() as u32;
+            let v = *known.entry(key(*p)).or_insert(next);
+            if v == next {
+                loops.vertices.push(*p);
+            }
+            if face.last() != Some(&v) && face.first() != Some(&v) {
+                face.push(v);
+            }
+        }
+        let mut set = face.clone();
+        set.sort_unstable();
+        // The two sides of a plate hide alike.
+        if face.len() >= 3 && sets.insert(set) {
+            loops.faces.push(face);
+        }
+    }
+    loops
+}
+
+/// Groups of faces that hang together by edges.
+fn connected(faces: &[Vec<u32>]) -> Vec<Vec<usize>> {
+    let mut parent: Vec<usize> = (0..faces.len()).collect();
+    fn root(parent: &mut [usize], mut k: usize) -> usize {
+        while parent[k] != k {
+            parent[k] = parent[parent[k]];
+            k = parent[k];
+        }
+        k
+    }
+    let mut along: HashMap<[u32; 2], usize> = HashMap::new();
+    for (f, face) in faces.iter().enumerate() {
+        for k in 0..face.len() {
+            let (a, b) = (face[k], face[(k + 1) % face.len()]);
+            let other = *along.entry([a.min(b), a.max(b)]).or_insert(f);
+            let (r, s) = (root(&mut parent, f), root(&mut parent, other));
+            parent[r.max(s)] = r.min(s);
+        }
+    }
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for f in 0..faces.len() {
+        groups.entry(root(&mut parent, f)).or_default().push(f);
+    }
+    groups.into_values().collect()
+}
+
+/// The convex solid that some faces close around, also where its base is missing because it stands on another face.
+fn solid(all: &Loops, part: &[usize]) -> Option<Polytope> {
+    if part.len() < 4 || part.len() > MOST_FACES {
+        return None;
+    }
+    let mut loops: Vec<Vec<u32>> = part.iter().map(|f| all.faces[*f].clone()).collect();
+    if let Some(base) = open_rim(&loops) {
+        if !stands_on(all, part, &base) {
+            return None;
+        }
+        loops.push(base);
+    }
+    let mut number: BTreeMap<u32, u32> = BTreeMap::new();
+    for v in loops.iter().flatten() {
+        let next = number.len() as u32;
+        number.entry(*v).or_insert(next);
+    }
+    let mut vertices = vec![DVec3::ZERO; number.len()];
+    number.iter().for_each(|(v, k)| vertices[*k as usize] = all.vertices[*v as usize]);
+    let renamed = loops.iter().map(|l| l.iter().map(|v| number[v]).collect()).collect();
+    Polytope::closed(vertices, renamed)
+}
+
+/// The one loop of edges that only one face has, turned to close the body.
+fn open_rim(loops: &[Vec<u32>]) -> Option<Vec<u32>> {
+    let mut half = std::collections::BTreeSet::new();
+    for l in loops {
+        (0..l.len()).for_each(|k| {
+            half.insert((l[k], l[(k + 1) % l.len()]));
+        });
+    }
+    let open: BTreeMap<u32, u32> = half.iter().filter(|(a, b)| !half.contains(&(*b, *a))).map(|(a, b)| (*b, *a)).collect();
+    let start = *open.keys().next()?;
+    let mut rim = vec![start];
+    let mut at = open[&start];
+    while at != start && rim.len() <= open.len() {
+        rim.push(at);
+        at = *open.get(&at)?;
+    }
+    (rim.len() == open.len()).then_some(rim)
+}
+
+/// Whether the rim lies in one plane and on one face of another part: whatever passes through it meets that face.
+fn stands_on(all: &Loops, part: &[usize], rim: &[u32]) -> bool {
+    let rim: Vec<DVec3> = rim.iter().map(|v| all.vertices[*v as usize]).collect();
+    let size = rim.iter().map(|p| p.distance(rim[0])).fold(0.0, f64::max);
+    let slack = SAME * size;
+    let carries = |f: usize| {
+        let corners = all.corners(f);
+        let normal = unit_normal(&corners);
+        rim.iter().all(|p| {
+            (*p - corners[0]).dot(normal).abs() <= slack
+                && (0..corners.len()).all(|k| {
+                    let edge = corners[(k + 1) % corners.len()] - corners[k];
+                    normal.cross(edge).dot(*p - corners[k]) >= -slack * edge.length()
+                })
+        })
+    };
+    (0..all.faces.len()).any(|f| !part.contains(&f) && carries(f))
+}
