@@ -50,7 +50,7 @@ pub struct PairPlan {
     pub max_time: Option<Duration>,
     /// Points per pair and wave at most.
     pub points_per_pair: usize,
-    /// Bodies in a shaft up to which the integral is cut also where two bodies line up.
+    /// Bodies in a shaft up to which the integral is cut also where two bodies line up, after the first wave.
     pub arranged_bodies: usize,
     /// Pairs with more bodies in their shaft are left to rays.
     pub most_bodies: usize,
@@ -135,7 +135,9 @@ pub fn pair_form_factors(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64)
     let mut tolerance = FIRST / present as f64;
     let mut waves = Vec::new();
     loop {
-        let points = wave(stage, plan, &bodies, &mut settled, tolerance);
+        // The lines where two bodies line up are many, and pay only once the error is small.
+        let arranged_bodies = if waves.is_empty() { 1 } else { plan.arranged_bodies };
+        let points = wave(stage, &PairPlan { arranged_bodies, ..*plan }, &bodies, &mut settled, tolerance);
         tally.points += points;
         let relative = relative_error(stage, &settled);
         waves.push((tally.points, relative));

@@ -7,6 +7,9 @@ use crate::math::DVec2;
 /// Orders tried in a cell before it is divided.
 const LADDER: [usize; 5] = [1, 2, 3, 5, 7];
 
+/// Where there may be kinks, an error is at least this share of the one an order below.
+const KINK_MEMORY: f64 = 0.1;
+
 /// Divisions of one cell.
 const DEEPEST: u8 = 12;
 
@@ -36,14 +39,19 @@ pub(super) struct Integral {
 }
 
 /// Integrates `f` over a convex polygon cut along `lines` until the error falls below `tolerance`, or `most` points.
+///
+/// `kinks`: the lines are not all of those where `f` bends, so that two orders may agree by chance: an error then
+/// falls by no more than a factor at a time.
 pub(super) fn integrate(
     domain: &[DVec2],
     lines: &[Line],
+    kinks: bool,
     tolerance: f64,
     most: usize,
     f: &mut impl FnMut(DVec2) -> f64,
 ) -> Integral {
     let whole = area(domain);
+    let memory = if kinks { KINK_MEMORY } else { 0.0 };
     let mut points = 0;
     let mut cells: Vec<Cell> = Vec::new();
     for polygon in arranged(domain, lines) {
@@ -67,7 +75,7 @@ pub(super) fn integrate(
             }
             stuck = false;
             if c.order + 1 < LADDER.len() && c.is_worth_raising() {
-                next.push(raised(c, &mut points, f));
+                next.push(raised(c, memory, &mut points, f));
             } else {
                 quarters(&c, &mut |corners| next.push(begun(corners, c.depth + 1, &mut points, f)));
             }
@@ -90,15 +98,17 @@ impl Cell {
     }
 }
 
+/// One point to begin with. Between event lines, what is zero at one point is zero throughout.
 fn begun(corners: [DVec2; 4], depth: u8, points: &mut usize, f: &mut impl FnMut(DVec2) -> f64) -> Cell {
-    let first = apply(&corners, LADDER[0], points, f);
-    let value = apply(&corners, LADDER[1], points, f);
-    Cell { corners, value, error: (value - first).abs(), order: 1, depth }
+    let value = apply(&corners, LADDER[0], points, f);
+    Cell { corners, value, error: value.abs(), order: 0, depth }
 }
 
-fn raised(cell: Cell, points: &mut usize, f: &mut impl FnMut(DVec2) -> f64) -> Cell {
+/// `memory`: the share of the last error that a new one does not fall below.
+fn raised(cell: Cell, memory: f64, points: &mut usize, f: &mut impl FnMut(DVec2) -> f64) -> Cell {
     let value = apply(&cell.corners, LADDER[cell.order + 1], points, f);
-    Cell { value, error: (value - cell.value).abs(), order: cell.order + 1, ..cell }
+    let floor = if cell.order == 0 { 0.0 } else { memory * cell.error };
+    Cell { value, error: (value - cell.value).abs().max(floor), order: cell.order + 1, ..cell }
 }
 
 /// The rule of n x n points on a cell.

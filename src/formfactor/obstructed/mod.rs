@@ -21,7 +21,7 @@ pub struct Effort {
     pub tolerance: f64,
     /// Points evaluated at most (a few more to finish a sweep).
     pub points: usize,
-    /// Bodies up to which the domain is cut along all event lines; beyond, refinement finds the kinks.
+    /// Bodies up to which the domain is cut also where two of them line up; beyond, refinement finds those kinks.
     pub arranged_bodies: usize,
 }
 
@@ -54,11 +54,13 @@ pub fn hidden_exchange(a: &[DVec3], b: &[DVec3], bodies: &[&Polytope], effort: &
         return Hidden::default();
     }
     let count = view.bodies.len();
-    let lines = events::lines(&view, count > 1 && count <= effort.arranged_bodies);
+    let together = count > 1 && count <= effort.arranged_bodies;
+    let lines = events::lines(&view, together);
+    let kinks = count > 1 && !together;
     let unit = 1.0 / (2.0 * PI);
     SCRATCH.with_borrow_mut(|scratch| {
         let mut hidden = |p| view.hidden(view.point(p), scratch);
-        let sum = cells::integrate(&view.domain, &lines, effort.tolerance / unit, effort.points, &mut hidden);
+        let sum = cells::integrate(&view.domain, &lines, kinks, effort.tolerance / unit, effort.points, &mut hidden);
         Hidden { exchange: sum.value * unit, error: sum.error * unit, points: sum.points }
     })
 }

@@ -60,11 +60,20 @@ impl View {
         for (k, body) in self.bodies.iter().enumerate() {
             let (before, rest) = scratch.shadows.split_at_mut(k);
             let shadow = &mut rest[0];
-            body.shadow(x, shadow);
+            match body.shadow(x, &self.target, shadow) {
+                Shadow::Misses => continue,
+                // Whatever the others hide, this one does too.
+                Shadow::Hides => return self.lambert(x, &self.target),
+                Shadow::Cuts => {}
+            }
             scratch.part.clear();
             scratch.part.extend_from_slice(&self.target);
-            if shadow.is_empty() || !cut_to(&mut scratch.part, &mut scratch.other, shadow) {
+            if !cut_to(&mut scratch.part, &mut scratch.other, shadow) {
                 shadow.clear();
+                continue;
+            }
+            if before.iter().all(Vec::is_empty) {
+                sum += self.lambert(x, &scratch.part);
                 continue;
             }
             scratch.pieces.clear();
@@ -102,9 +111,17 @@ impl View {
     }
 }
 
+/// How a shadow lies to the target.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shadow {
+    Misses,
+    Hides,
+    Cuts,
+}
+
 impl Body {
-    /// Half-planes of the target's plane whose common part this body hides from `x`; none if it hides nothing.
-    fn shadow(&self, x: DVec3, out: &mut Vec<HalfPlane>) {
+    /// Half-planes whose common part this body hides from `x`, as far as they cut the target.
+    fn shadow(&self, x: DVec3, target: &[DVec2], out: &mut Vec<HalfPlane>) -> Shadow {
         out.clear();
         let mut seen = 0u64;
         for (k, plane) in self.planes.iter().enumerate() {
@@ -113,7 +130,7 @@ impl Body {
             }
         }
         if seen == 0 {
-            return;
+            return Shadow::Misses;
         }
         let inwards = self.centre - x;
         for e in &self.edges {
@@ -125,8 +142,22 @@ impl Body {
             if normal.dot(inwards) < 0.0 {
                 normal = -normal;
             }
-            out.push(HalfPlane { a: normal.x, b: normal.y, c: -normal.dot(x) });
+            let half_plane = HalfPlane { a: normal.x, b: normal.y, c: -normal.dot(x) };
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for p in target {
+                let h = half_plane.at(*p);
+                low = low.min(h);
+                high = high.max(h);
+            }
+            if high <= 0.0 {
+                out.clear();
+                return Shadow::Misses;
+            }
+            if low < 0.0 {
+                out.push(half_plane);
+            }
         }
+        if out.is_empty() { Shadow::Hides } else { Shadow::Cuts }
     }
 }
 
