@@ -47,9 +47,13 @@ fn by_rays(stage: &Stage, pairs: &PairFactors, counts: &HitCounts) -> Check {
             }
         }
     }
+    // The whole exchange besides: a share lost everywhere shows there first.
+    let whole = n * n;
+    exact.push(exact.iter().sum());
+    rays.iter_mut().for_each(|f| f.push(f.iter().sum()));
     let step = areas.iter().copied().fold(0.0, f64::max) / counts.rays as f64;
     let (mut p_min, mut tested, mut worst, mut largest) = (1.0f64, 0, 0, 0.0f64);
-    for k in 0..n * n {
+    for k in 0..=whole {
         let hits: f64 = rays.iter().map(|f| f[k]).sum();
         if hits.max(exact[k] * rays.len() as f64) < LEAST_STEPS * step {
             continue;
@@ -68,7 +72,9 @@ fn by_rays(stage: &Stage, pairs: &PairFactors, counts: &HitCounts) -> Check {
     }
     let p = sidak(p_min, tested);
     let name = |g: usize| stage.surfaces.get(g).map_or("", |s| s.name.as_str());
-    let places = if stage.surfaces.len() == n && p < 1.0 {
+    let places = if worst == whole {
+        ", worst the sum of all".into()
+    } else if stage.surfaces.len() == n && p < 1.0 {
         format!(", worst {} to {}", name(worst / n), name(worst % n))
     } else {
         String::new()

@@ -45,6 +45,7 @@ pub(super) fn run(
             witness(evidence),
             exchange(stage, &test_reciprocity(stage, counts)),
             energy(stage, counts, mean),
+            independence(counts),
             check("residual", residual <= RESIDUAL_LIMIT, format!("the patch system is solved to {residual:.1e}")),
         ],
     }
@@ -106,6 +107,32 @@ fn exchange(stage: &Stage, r: &Reciprocity) -> Check {
     check("reciprocity", p >= FALSE_ALARM, format!("p = {p:.2e} over {} pairs of surfaces{names}", r.pairs))
 }
 
+/// Errors are read off the spread of the randomisations: two that drew the same numbers would make them too small.
+fn independence(counts: &HitCounts) -> Check {
+    let mut prints = vec![0u64; usize::from(counts.randomisations)];
+    for (i, row) in counts.rows.iter().enumerate() {
+        for e in row {
+            let word = (i as u64) << 40 ^ (e.patch() as u64) << 20 ^ e.count();
+            let print = &mut prints[e.randomisation()];
+            *print = (*print ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        }
+    }
+    let name = "randomisations";
+    let deals = counts.rows.iter().map(Vec::len).max().unwrap_or(0);
+    // Where every ray of a row lands in one patch, all randomisations count alike.
+    if deals <= usize::from(counts.randomisations) {
+        return check(name, true, "not tested: no row meets more than one patch".into());
+    }
+    let twin = (0..prints.len()).find_map(|r| (0..r).find(|q| prints[*q] == prints[r]).map(|q| (q, r)));
+    match twin {
+        None => check(name, true, format!("no two of {} count the same hits", prints.len())),
+        Some((q, r)) => {
+            let finding = format!("numbers {q} and {r} count the same hits everywhere: a seed was used twice");
+            check(name, false, finding)
+        }
+    }
+}
+
 /// What all patches receive must be what all patches send, less what is lost on the way. Rays count it from
 /// both ends: received `sum A_i F_ij B_j`, sent `sum A_i B_i (1 - lost_i)`.
 fn energy(stage: &Stage, counts: &HitCounts, mean: &[f64]) -> Check {
@@ -147,4 +174,31 @@ fn relative_mean(d: &[f64], scale: f64) -> (f64, f64) {
 /// Two-sided p; 1 where mean and error are both rounding.
 fn t_or_one(mean: f64, std_err: f64, r: usize) -> f64 {
     if mean.abs() <= 1e-12 && std_err <= 1e-12 { 1.0 } else { t_p_value(mean, std_err, r as f64 - 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Entry;
+
+    #[test]
+    fn a_seed_used_twice_is_found() {
+        let counts = |second: u64| {
+            let mut c = HitCounts::empty(3, 2, vec![true, true]);
+            c.rays = 8;
+            let row = |patch: u32, n: u64| {
+                vec![
+                    Entry::new(patch, 0, 3),
+                    Entry::new(patch, 1, n),
+                    Entry::new(patch + 1, 0, 5),
+                    Entry::new(patch + 1, 1, 8 - n),
+                ]
+            };
+            c.rows = vec![row(0, second), row(1, second)];
+            c
+        };
+        assert!(independence(&counts(4)).passed);
+        let twice = independence(&counts(3));
+        assert!(!twice.passed && twice.finding.contains("used twice"), "{}", twice.finding);
+    }
 }
