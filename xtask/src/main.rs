@@ -1,5 +1,7 @@
 //! `cargo xtask demo`, `cargo xtask test`, `cargo xtask ci`: the set-up that a bare machine needs, and the work.
 
+mod exact;
+
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, ExitStatus};
@@ -8,6 +10,7 @@ const HELP: &str = "\
 cargo xtask demo   build, provide Embree if there is none, run the Cornell box to a report
 cargo xtask test   the same set-up, then every test, also those of the feature embree4-rs
 cargo xtask ci     formatting, lints and documentation, all with warnings as errors
+cargo xtask exact  exact form factors of obstructed pairs, from standard input to standard output
 Further arguments go to `etalon demo` or `cargo test`.";
 
 /// Examples of the library that have to run, not only to compile.
@@ -24,6 +27,7 @@ fn main() -> ExitCode {
         Some("demo") => demo(&rest),
         Some("test") => test(&rest),
         Some("ci") => ci(),
+        Some("exact") => exact::run(threads()).map_err(Stopped),
         Some("help" | "--help" | "-h") => {
             println!("{HELP}");
             return ExitCode::SUCCESS;
@@ -72,6 +76,10 @@ fn set_up() -> Result<(), Stopped> {
         eprintln!("xtask: and tests that compare the two kernels are skipped with a notice");
     }
     Ok(())
+}
+
+fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 fn cargo() -> Command {
