@@ -85,6 +85,11 @@ impl Body {
         Some(Self::solid(faces).expect("a cut polyhedron with a lid is closed"))
     }
 
+    /// Its faces, each counter-clockwise seen from outside.
+    pub fn faces(&self) -> &[Vec<Vector>] {
+        &self.faces
+    }
+
     /// The directions it hides from `x`.
     pub fn shadow(&self, x: Vector) -> Shadow {
         let seen: Vec<bool> = self.planes.iter().map(|p| p.height(x) > ON_PLANE).collect();
