@@ -152,5 +152,5 @@ def all_scenes():
     eight = cube_with_boxes("cube-boxes-8", grid_of_boxes((0.25, 0.75), 0.1), 1, [0], [])
     many = cube_with_boxes("cube-boxes-27", grid_of_boxes((1 / 6, 0.5, 5 / 6), 1 / 15), 1, [], [])
     for seed, scene in enumerate((one, eight, many), start=1):
-        scene["candidates"] = some_pairs(seed, len(scene["patches"]), 120)
+        scene["candidates"] = some_pairs(seed, len(scene["patches"]), 300)
     return [one, eight, many, partition(0.1), partition(0.0), louvres(), *tilted()]

@@ -1,5 +1,5 @@
 //! The same form factors a second way, sharing nothing but vectors and bodies with the first: shadows are hulls of
-//! projected corners, taken off the receiver in its own plane piece by piece, and the patch is divided into quarters
+//! projected corners, taken off the receiver in its own plane piece by piece, and the patch is halved
 //! where the integrand asks for it. Nothing is known here of where kinks lie.
 
 use super::body::Body;
@@ -26,7 +26,7 @@ const WEIGHTS: [f64; 5] = [
 ];
 
 /// The form factor of `sender` to `receiver` with `bodies` between. The error is the sum over all quads of what
-/// dividing each once more changed, so that it is large rather than small.
+/// halving each once more changed, so that it is large rather than small.
 pub fn form_factor(
     sender: &[Vector],
     receiver: &[Vector],
@@ -43,7 +43,7 @@ pub fn form_factor(
     let view = View::new(&to, facing, front.normal, bodies.iter().filter_map(relevant).collect());
     let mut first = quads(&from);
     for _ in 0..EVENLY_DIVIDED {
-        first = first.iter().flat_map(quarters).collect();
+        first = first.iter().flat_map(|q| halves(q)[0]).flat_map(|q| halves(&q)[1]).collect();
     }
     let mut heap: BinaryHeap<Part> = first.into_iter().map(|q| Part::new(q, rule(&q, &view), &view)).collect();
     let whole = area(sender);
@@ -51,27 +51,30 @@ pub fn form_factor(
     while error > tolerance * whole && heap.len() < most_quads {
         let Some(worst) = heap.pop() else { break };
         error -= worst.error;
-        for (quad, value) in worst.quarters {
+        for (quad, value) in worst.halves {
             let part = Part::new(quad, value, &view);
             error += part.error;
             heap.push(part);
         }
     }
     let sum = |f: fn(&Part) -> f64| heap.iter().map(f).sum::<f64>() / whole;
-    Integral { value: sum(|p| p.quarters.iter().map(|q| q.1).sum()), error: sum(|p| p.error) }
+    Integral { value: sum(|p| p.halves.iter().map(|q| q.1).sum()), error: sum(|p| p.error) }
 }
 
-/// A quad with the values of its quarters.
+/// A quad with the values of its halves, cut the way that changes its value more.
 struct Part {
-    quarters: [(Quad, f64); 4],
+    halves: [(Quad, f64); 2],
     error: f64,
 }
 
 impl Part {
     fn new(quad: Quad, value: f64, view: &View) -> Self {
-        let quarters = quarters(&quad).map(|q| (q, rule(&q, view)));
-        let error = (quarters.iter().map(|q| q.1).sum::<f64>() - value).abs();
-        Self { quarters, error }
+        let cuts = halves(&quad).map(|cut| {
+            let halves = cut.map(|q| (q, rule(&q, view)));
+            Self { error: (halves[0].1 + halves[1].1 - value).abs(), halves }
+        });
+        let [across, along] = cuts;
+        if across.error >= along.error { across } else { along }
     }
 }
 
@@ -112,10 +115,10 @@ fn half(a: Vector, b: Vector) -> Vector {
     along(a, 0.5, sub(b, a))
 }
 
-fn quarters(&[a, b, c, d]: &Quad) -> [Quad; 4] {
+/// A quad cut in two, either way.
+fn halves(&[a, b, c, d]: &Quad) -> [[Quad; 2]; 2] {
     let (ab, bc, cd, da) = (half(a, b), half(b, c), half(c, d), half(d, a));
-    let m = half(ab, cd);
-    [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]]
+    [[[a, ab, cd, d], [ab, b, c, cd]], [[a, b, bc, da], [da, bc, c, d]]]
 }
 
 /// Five by five points of Gauss in the bilinear coordinates of a quad.

@@ -25,8 +25,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Asked of every integral, as a part of the form factor's unit.
 const TOLERANCE: f64 = 1e-12;
 /// Asked of the second way: far less than it has to reach, since an estimate that knows of no kinks can miss one.
-const BRUTE_TOLERANCE: f64 = 5e-11;
-const BRUTE_QUADS: usize = 60_000;
+const BRUTE_TOLERANCE: f64 = 1e-12;
+const BRUTE_QUADS: usize = 20_000;
 
 /// Reads the scene and what is asked from standard input and writes the form factors to standard output.
 ///
