@@ -7,6 +7,7 @@ import argparse
 import csv
 import pathlib
 import statistics
+import subprocess
 import sys
 import tempfile
 
@@ -34,6 +35,7 @@ def arguments():
     parser.add_argument("--max-time", type=float, default=60.0, help="seconds after which a setting is not repeated")
     parser.add_argument("--quick", action="store_true", help="no more than 10,000 rays a patch for the slow tools")
     parser.add_argument("--tools", help="names, separated by commas")
+    parser.add_argument("--alone", action="store_true", help=argparse.SUPPRESS)
     return parser.parse_args()
 
 
@@ -46,15 +48,13 @@ def measured(run, repeats, max_time):
     return statistics.median(times), matrix, said, len(times)
 
 
-def lines(scene, options, rows, exact, folder):
-    wanted = options.tools.split(",") if options.tools else list(tools.ALL)
-    for tool in wanted:
-        head = {"scene": scene.name, "patches": scene.count, "tool": tool}
-        try:
-            for setting, run in tools.ALL[tool](scene, options, folder):
-                yield head | {"setting": setting} | outcome(run, options, rows, exact)
-        except tools.Missing as why:
-            yield head | {"note": f"not there: {why}"}
+def lines(scene, tool, options, rows, exact, folder):
+    head = {"scene": scene.name, "patches": scene.count, "tool": tool}
+    try:
+        for setting, run in tools.ALL[tool](scene, options, folder):
+            yield head | {"setting": setting} | outcome(run, options, rows, exact)
+    except tools.Missing as why:
+        yield head | {"note": f"not there: {why}"}
 
 
 def outcome(run, options, rows, exact):
@@ -75,20 +75,34 @@ def outcome(run, options, rows, exact):
     }
 
 
+def one_by_one(names, output):
+    """Every tool in a process of its own: one that aborts takes only its own settings along."""
+    for name in names:
+        done = subprocess.run([sys.executable, *sys.argv, "--tools", name, "--alone"])
+        if done.returncode != 0:
+            with output.open("a", newline="") as file:
+                scene = Scene(sys.argv[1])
+                note = f"ended by itself with code {done.returncode}"
+                line = {"scene": scene.name, "patches": scene.count, "tool": name, "note": note}
+                csv.DictWriter(file, COLUMNS, restval="").writerow(line)
+
+
 def main():
     options = arguments()
-    unknown = set((options.tools or "etalon").split(",")) - set(tools.ALL)
-    if unknown:
+    names = options.tools.split(",") if options.tools else list(tools.ALL)
+    if unknown := set(names) - set(tools.ALL):
         sys.exit(f"no tool is called {', '.join(sorted(unknown))}; there are {', '.join(tools.ALL)}")
+    output = pathlib.Path(options.output)
     scene = Scene(options.scene)
     rows, exact = truth.of(scene, options.xtask, options.cache)
-    output = pathlib.Path(options.output)
-    fresh = not output.exists()
+    if not options.alone:
+        if not output.exists():
+            output.write_text(",".join(COLUMNS) + "\n")
+        one_by_one(names, output)
+        return
     with tempfile.TemporaryDirectory() as folder, output.open("a", newline="") as file:
         table = csv.DictWriter(file, COLUMNS, restval="")
-        if fresh:
-            table.writeheader()
-        for line in lines(scene, options, rows, exact, folder):
+        for line in lines(scene, names[0], options, rows, exact, folder):
             table.writerow(line)
             file.flush()
             print("  " + ", ".join(str(v) for v in line.values() if v != ""), flush=True)

@@ -7,11 +7,9 @@ A setting is a name and a function of no arguments that returns (seconds, matrix
 import importlib
 import io
 import json
-import os
 import pathlib
 import shutil
 import subprocess
-import tempfile
 import time
 
 import numpy as np

@@ -29,7 +29,7 @@ pub fn in_shaft(from: &[Vector], to: &[Vector], body: &Body) -> bool {
             }
         }
     }
-    ![plane_of(from), plane_of(to)].iter().any(|p| separates(p))
+    ![plane_of(from), plane_of(to)].iter().any(separates)
 }
 
 /// All planes on whose trace in the sender the visible part of the receiver may have a kink, but for the curves on

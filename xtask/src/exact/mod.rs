@@ -157,7 +157,7 @@ impl Scene {
 fn corners(text: &str) -> Result<Vec<Vector>, String> {
     let numbers = text.split_whitespace().map(|w| w.parse().map_err(|_| format!("'{w}' is not a number")));
     let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
-    if numbers.len() < 9 || numbers.len() % 3 != 0 {
+    if numbers.len() < 9 || !numbers.len().is_multiple_of(3) {
         return Err(format!("{} numbers are no polygon: three for each of three corners or more", numbers.len()));
     }
     Ok(numbers.chunks(3).map(|c| [c[0], c[1], c[2]]).collect())

@@ -30,7 +30,8 @@ impl Outline {
     }
 }
 
-/// What a cone covers of an outline.
+/// What a cone covers of an outline. It lives on the stack for a moment: a box would cost more than the space.
+#[allow(clippy::large_enum_variant)]
 enum Cover {
     Nothing,
     Everything,
