@@ -43,7 +43,13 @@ def ask(engine, scene, word, items, with_bodies=True):
     text = "\n".join(engine_text(scene, with_bodies) + asked) + "\n"
     out = subprocess.run([engine, "exact"], input=text, capture_output=True, text=True, check=True).stdout
     rows = [r.split() for r in out.splitlines()]
-    return {(int(r[0]), int(r[1])): (float(r[2]), float(r[4]), float(r[3]), float(r[5])) for r in rows}
+    return {(int(r[0]), int(r[1])): (without_rounding(r[2]), without_rounding(r[4]), float(r[3]), float(r[5])) for r in rows}
+
+
+def without_rounding(text):
+    """What is hidden altogether is zero, not what is left of a difference."""
+    value = float(text)
+    return value if abs(value) > 1e-15 else 0.0
 
 
 def boxes_only(scene):

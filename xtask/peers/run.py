@@ -22,6 +22,8 @@ from scene import Scene
 
 COLUMNS = ["scene", "patches", "tool", "setting", "seconds", "rms", "max", "repeats", "note"]
 
+HINTS = {"Mitsuba": ": an LLVM too old? DRJIT_LIBLLVM_PATH names another (19 works)"}
+
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -63,7 +65,7 @@ def outcome(run, options, rows, exact):
     except Exception as e:  # One tool that fails must not cost the others their run.
         return {"note": f"failed: {type(e).__name__}: {e}"[:200]}
     error = matrix[rows] - exact
-    note = "; ".join(f"{k} {v}" for k, v in said.items() if v is not None)
+    note = "; ".join(f"{k} {v:.2g}" for k, v in said.items() if v is not None)
     if len(rows) < len(matrix):
         note = "; ".join(filter(None, [f"error over {len(rows)} rows", note]))
     return {
@@ -82,7 +84,7 @@ def one_by_one(names, output):
         if done.returncode != 0:
             with output.open("a", newline="") as file:
                 scene = Scene(sys.argv[1])
-                note = f"ended by itself with code {done.returncode}"
+                note = f"ended by itself with code {done.returncode}" + HINTS.get(name, "")
                 line = {"scene": scene.name, "patches": scene.count, "tool": name, "note": note}
                 csv.DictWriter(file, COLUMNS, restval="").writerow(line)
 
