@@ -1,5 +1,8 @@
 //! `cargo xtask demo`, `cargo xtask test`, `cargo xtask ci`: the set-up that a bare machine needs, and the work.
 
+mod exact;
+mod peers;
+
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, ExitStatus};
@@ -8,6 +11,8 @@ const HELP: &str = "\
 cargo xtask demo   build, provide Embree if there is none, run the Cornell box to a report
 cargo xtask test   the same set-up, then every test, also those of the feature embree4-rs
 cargo xtask ci     formatting, lints and documentation, all with warnings as errors
+cargo xtask exact  exact form factors of obstructed pairs, from standard input to standard output
+cargo xtask peers  other programs for form factors beside etalon: error against time (--help says more)
 Further arguments go to `etalon demo` or `cargo test`.";
 
 /// Examples of the library that have to run, not only to compile.
@@ -24,6 +29,8 @@ fn main() -> ExitCode {
         Some("demo") => demo(&rest),
         Some("test") => test(&rest),
         Some("ci") => ci(),
+        Some("peers") => peers::peers(&rest),
+        Some("exact") => exact::run(threads()).map_err(Stopped),
         Some("help" | "--help" | "-h") => {
             println!("{HELP}");
             return ExitCode::SUCCESS;
@@ -74,6 +81,10 @@ fn set_up() -> Result<(), Stopped> {
     Ok(())
 }
 
+fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 fn cargo() -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(workspace());
@@ -82,8 +93,11 @@ fn cargo() -> Command {
 
 /// The program just built. It runs where the user is, so that paths mean what they say.
 fn etalon() -> Command {
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from);
-    Command::new(target.join("release").join("etalon"))
+    Command::new(target().join("release").join("etalon"))
+}
+
+fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from)
 }
 
 fn workspace() -> PathBuf {
