@@ -1,0 +1,130 @@
+//! What each pair of patches exchanges, from both directions of a matrix: the unknowns of the enforcement.
+
+use super::Surroundings;
+use crate::solution::FormFactors;
+
+/// Variance of an exchange stated as exact, as a share of its square: rounding.
+const EXACT: f64 = 1e-28;
+
+/// A pair i < j: exchange `A_i F_ij` in m^2 and its variance in m^4.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pair {
+    pub i: u32,
+    pub j: u32,
+    pub value: f64,
+    pub variance: f64,
+}
+
+/// Estimates of the exchanges of all stored pairs that geometry allows, by row and column.
+///
+/// Both directions are weighed by their inverse variances, each variance taken at the size the two agree on: the
+/// variance of a share counted by rays grows with the share, and weighing by the variance at one's own value would
+/// favour whichever direction happened to come out low. A direction without a value has seen 0 of the exchange, with
+/// the typical noise of its row. Without standard errors the variance is taken to be proportional to the exchange.
+pub(super) fn combine(f: &FormFactors, around: &Surroundings) -> Vec<Pair> {
+    let known = errors_are_known(f);
+    let typical: Vec<Option<f64>> = (0..f.n).map(|i| typical_grain(f, around.areas[i], i)).collect();
+    let mut pairs = Vec::with_capacity(f.stored() / 2 + 1);
+    for i in 0..f.n {
+        for (j, _) in f.row(i) {
+            // A pair stands in the list once: at its smaller row, or where that row does not name it.
+            if (j > i || !f.holds(j, i)) && around.forbids(i, j).is_none() {
+                let (low, high) = (i.min(j), i.max(j));
+                pairs.push(pair(f, &around.areas, known.then_some(&typical), low, high));
+            }
+        }
+    }
+    pairs.retain(|p| p.value != 0.0);
+    pairs.sort_unstable_by_key(|p| (p.i, p.j));
+    pairs
+}
+
+/// True if every stored entry has a standard error that is a number.
+pub(super) fn errors_are_known(f: &FormFactors) -> bool {
+    f.std_err.as_ref().is_some_and(|e| e.iter().all(|e| e.is_finite() && *e >= 0.0))
+}
+
+fn pair(f: &FormFactors, areas: &[f64], typical: Option<&Vec<Option<f64>>>, i: usize, j: usize) -> Pair {
+    let (there, back) = (areas[i] * f.get(i, j), areas[j] * f.get(j, i));
+    let (a, b) = typical.map_or((1.0, 1.0), |typical| {
+        let own = [grain(f, areas[i], i, j), grain(f, areas[j], j, i)];
+        grains(own, [typical[i], typical[j]])
+    });
+    // Where both are exact, both count alike.
+    let (wa, wb) = if a > 0.0 && b > 0.0 { (1.0 / a, 1.0 / b) } else { (1.0, 1.0) };
+    let value = (wa * there + wb * back) / (wa + wb);
+    let size = (wa * there.abs() + wb * back.abs()) / (wa + wb);
+    let counted = if a > 0.0 && b > 0.0 { size / (wa + wb) } else { 0.0 };
+    Pair { i: i as u32, j: j as u32, value, variance: counted.max(EXACT * size * size) }
+}
+
+/// Variance of the exchange A_i F_ij per unit of exchange, m^2; `None` where no error is stated.
+fn grain(f: &FormFactors, area: f64, i: usize, j: usize) -> Option<f64> {
+    let (value, std_err) = (f.get(i, j).abs(), f.std_err_of(i, j)?);
+    (value > 0.0 && std_err.is_finite()).then(|| area * std_err * std_err / value)
+}
+
+/// The grains of both directions. An unknown one is that of its row; so is a 0 beside a partner that is not exact too,
+/// which is a coincidence of equal counts and no certainty.
+fn grains(own: [Option<f64>; 2], typical: [Option<f64>; 2]) -> (f64, f64) {
+    if own == [Some(0.0); 2] {
+        return (0.0, 0.0);
+    }
+    let stated = own.map(|g| g.filter(|g| *g > 0.0));
+    let of = |k: usize| stated[k].or(typical[k]).or(stated[1 - k]).or(typical[1 - k]).unwrap_or(0.0);
+    (of(0), of(1))
+}
+
+/// The median of the grains of a row that are above 0.
+fn typical_grain(f: &FormFactors, area: f64, i: usize) -> Option<f64> {
+    let mut all: Vec<f64> = f.row(i).filter_map(|(j, _)| grain(f, area, i, j)).filter(|g| *g > 0.0).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    all.get(all.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn around(areas: &[f64]) -> Surroundings<'static> {
+        Surroundings { areas: areas.to_vec(), closed: true, patches: &[] }
+    }
+
+    #[test]
+    fn both_directions_count_by_their_variances() {
+        // Exchanges 0.5 and 0.5 with standard errors 0.1 and 0.2: 1 / (100 + 25) is the variance of the mean.
+        let f = FormFactors::from_rows(vec![vec![(1, 0.5, 0.1)], vec![(0, 0.25, 0.1)]]);
+        let pairs = combine(&f, &around(&[1.0, 2.0]));
+        assert_eq!(pairs.len(), 1);
+        assert!((pairs[0].value - 0.5).abs() < 1e-15);
+        assert!((pairs[0].variance - 1.0 / 125.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn counts_by_rays_are_pooled_as_counts() {
+        // 1 and 5 hits of 1000 rays each, variances as large as the counts: 3 hits, not the 1.67 that weighing each
+        // by its own variance gives.
+        let f = FormFactors::from_rows(vec![vec![(1, 0.001, 0.001)], vec![(0, 0.005, 0.005f64.sqrt() / 1000f64.sqrt())]]);
+        assert!((combine(&f, &around(&[1.0, 1.0]))[0].value - 0.003).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_one_direction_never_hit_counts_as_nothing_seen() {
+        let se = |hits: f64| hits.sqrt() / 1000.0;
+        let rows = vec![vec![(1, 0.004, se(4.0)), (2, 0.3, se(300.0))], vec![], vec![(0, 0.3, se(300.0)), (1, 0.1, se(100.0))]];
+        let pairs = combine(&FormFactors::from_rows(rows), &around(&[1.0, 1.0, 1.0]));
+        // Row 1 states nothing: the grain of its partner is taken for it.
+        assert!((pairs[0].value - 0.002).abs() < 1e-12, "{pairs:?}");
+        assert_eq!(pairs.iter().map(|p| (p.i, p.j)).collect::<Vec<_>>(), [(0, 1), (0, 2), (1, 2)]);
+    }
+
+    #[test]
+    fn a_zero_beside_an_uncertain_partner_is_no_certainty() {
+        let se = |hits: f64| hits.sqrt() / 1000.0;
+        let rows = vec![vec![(1, 0.016, 0.0), (2, 0.1, se(100.0))], vec![(0, 0.02, se(20.0))], vec![(0, 0.1, se(100.0))]];
+        let pairs = combine(&FormFactors::from_rows(rows), &around(&[1.0, 1.0, 1.0]));
+        assert!((pairs[0].value - 0.018).abs() < 1e-12, "{pairs:?}");
+        let exact = FormFactors::from_rows(vec![vec![(1, 0.5, 0.0)], vec![(0, 0.5, 0.0)]]);
+        assert!(combine(&exact, &around(&[1.0, 1.0]))[0].variance < 1e-28);
+    }
+}
