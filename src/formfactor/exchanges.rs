@@ -1,6 +1,7 @@
 //! What each pair of patches exchanges, from both directions of a matrix: the unknowns of the enforcement.
 
 use super::Surroundings;
+use super::residue::for_pairs;
 use crate::solution::FormFactors;
 
 /// Variance of an exchange stated as exact, as a share of its square: rounding.
@@ -15,47 +16,80 @@ pub(super) struct Pair {
     pub variance: f64,
 }
 
-/// Estimates of the exchanges of all stored pairs that geometry allows, by row and column.
-///
-/// Both directions are weighed by their inverse variances, each variance taken at the size the two agree on: the
-/// variance of a share counted by rays grows with the share, and weighing by the variance at one's own value would
-/// favour whichever direction happened to come out low. A direction without a value has seen 0 of the exchange, with
-/// the typical noise of its row. Without standard errors the variance is taken to be proportional to the exchange.
-pub(super) fn combine(f: &FormFactors, around: &Surroundings) -> Vec<Pair> {
-    let known = errors_are_known(f);
-    let typical: Vec<Option<f64>> = (0..f.n).map(|i| typical_grain(f, around.areas[i], i)).collect();
-    let mut pairs = Vec::with_capacity(f.stored() / 2 + 1);
-    for i in 0..f.n {
-        for (j, _) in f.row(i) {
-            // A pair stands in the list once: at its smaller row, or where that row does not name it.
-            if (j > i || !f.holds(j, i)) && around.forbids(i, j).is_none() {
-                let (low, high) = (i.min(j), i.max(j));
-                pairs.push(pair(f, &around.areas, known.then_some(&typical), low, high));
-            }
-        }
+/// Both directions of a pair i < j: what each says of the exchange, m^2, and its grain, the variance per unit of exchange.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Both {
+    pub i: usize,
+    pub j: usize,
+    /// `A_i F_ij`.
+    pub there: f64,
+    /// `A_j F_ji`.
+    pub back: f64,
+    grains: (f64, f64),
+}
+
+impl Both {
+    /// Weights of the two directions. Where both are exact, both count alike.
+    fn weights(&self) -> (f64, f64) {
+        let (a, b) = self.grains;
+        if self.is_exact() { (1.0, 1.0) } else { (1.0 / a, 1.0 / b) }
     }
-    pairs.retain(|p| p.value != 0.0);
-    pairs.sort_unstable_by_key(|p| (p.i, p.j));
-    pairs
+
+    fn is_exact(&self) -> bool {
+        self.grains.0 == 0.0 || self.grains.1 == 0.0
+    }
+
+    /// The size both agree on, m^2.
+    fn size(&self) -> f64 {
+        let (a, b) = self.weights();
+        (a * self.there.abs() + b * self.back.abs()) / (a + b)
+    }
+
+    /// The most likely exchange.
+    fn combined(&self) -> Pair {
+        let ((a, b), size) = (self.weights(), self.size());
+        let value = (a * self.there + b * self.back) / (a + b);
+        let counted = if self.is_exact() { 0.0 } else { size / (a + b) };
+        Pair { i: self.i as u32, j: self.j as u32, value, variance: counted.max(EXACT * size * size) }
+    }
+
+    /// Standard error of `there - back`, m^2.
+    pub fn defect_std_err(&self) -> f64 {
+        let counted = if self.is_exact() { 0.0 } else { (self.grains.0 + self.grains.1) * self.size() };
+        counted.max(EXACT * self.size().powi(2)).sqrt()
+    }
+}
+
+/// Both directions of all stored pairs that geometry allows, by row and column.
+///
+/// The variance of a direction is taken at the size the two agree on: the variance of a share counted by rays grows with
+/// the share, and weighing by the variance at one's own value would favour whichever direction happened to come out low.
+/// A direction without a value has seen 0 of the exchange, with the typical noise of its row. Without standard errors
+/// the variance is taken to be proportional to the exchange.
+pub(super) fn both_directions(f: &FormFactors, around: &Surroundings) -> Vec<Both> {
+    let areas = &around.areas;
+    let known = errors_are_known(f);
+    let typical: Vec<Option<f64>> = (0..f.n).map(|i| typical_grain(f, areas[i], i).filter(|_| known)).collect();
+    let mut out = Vec::with_capacity(f.stored() / 2 + 1);
+    for_pairs(f, |i, j, there, back| {
+        if around.forbids(i, j).is_none() {
+            let own = [grain(f, areas[i], i, j), grain(f, areas[j], j, i)];
+            let grains = if known { grains(own, [typical[i], typical[j]]) } else { (1.0, 1.0) };
+            out.push(Both { i, j, there: areas[i] * there, back: areas[j] * back, grains });
+        }
+    });
+    out.sort_unstable_by_key(|b| (b.i, b.j));
+    out
+}
+
+/// Estimates of the exchanges: both directions weighed by their inverse variances.
+pub(super) fn combine(f: &FormFactors, around: &Surroundings) -> Vec<Pair> {
+    both_directions(f, around).iter().map(Both::combined).filter(|p| p.value != 0.0).collect()
 }
 
 /// True if every stored entry has a standard error that is a number.
 pub(super) fn errors_are_known(f: &FormFactors) -> bool {
     f.std_err.as_ref().is_some_and(|e| e.iter().all(|e| e.is_finite() && *e >= 0.0))
-}
-
-fn pair(f: &FormFactors, areas: &[f64], typical: Option<&Vec<Option<f64>>>, i: usize, j: usize) -> Pair {
-    let (there, back) = (areas[i] * f.get(i, j), areas[j] * f.get(j, i));
-    let (a, b) = typical.map_or((1.0, 1.0), |typical| {
-        let own = [grain(f, areas[i], i, j), grain(f, areas[j], j, i)];
-        grains(own, [typical[i], typical[j]])
-    });
-    // Where both are exact, both count alike.
-    let (wa, wb) = if a > 0.0 && b > 0.0 { (1.0 / a, 1.0 / b) } else { (1.0, 1.0) };
-    let value = (wa * there + wb * back) / (wa + wb);
-    let size = (wa * there.abs() + wb * back.abs()) / (wa + wb);
-    let counted = if a > 0.0 && b > 0.0 { size / (wa + wb) } else { 0.0 };
-    Pair { i: i as u32, j: j as u32, value, variance: counted.max(EXACT * size * size) }
 }
 
 /// Variance of the exchange A_i F_ij per unit of exchange, m^2; `None` where no error is stated.

@@ -1,12 +1,7 @@
 use super::*;
-use crate::formfactor::polygon_to_polygon;
-use crate::math::DVec3;
+use crate::formfactor::testing::{bare, cube, noisy};
 use crate::stats::chi_square_upper_tail;
 use crate::stats::test_random::Random;
-
-fn bare(areas: &[f64], closed: bool) -> Surroundings<'static> {
-    Surroundings { areas: areas.to_vec(), closed, patches: &[] }
-}
 
 /// Both directions of some exchanges, with one standard error for all.
 fn exchanges(areas: &[f64], given: &[(usize, usize, f64)], std_err: f64) -> FormFactors {
@@ -66,44 +61,6 @@ fn rows_without_freedom_are_named() {
     assert_eq!(done.info.unmet.last().unwrap().defect, -1.0);
 }
 
-/// The unit cube seen from inside, `k` x `k` patches per face: areas and exact form factors.
-fn cube(k: usize) -> (Vec<f64>, FormFactors) {
-    let mut patches = vec![];
-    for axis in 0..3 {
-        for side in [0.0, 1.0] {
-            for cell in 0..k * k {
-                let (u, v) = ((cell % k) as f64 / k as f64, (cell / k) as f64 / k as f64);
-                let step = 1.0 / k as f64;
-                let at = |a: f64, b: f64| {
-                    let mut p = [0.0; 3];
-                    (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (side, a, b);
-                    DVec3::from_array(p)
-                };
-                let mut corners = vec![at(u, v), at(u + step, v), at(u + step, v + step), at(u, v + step)];
-                if side == 1.0 {
-                    corners.reverse();
-                }
-                patches.push(corners);
-            }
-        }
-    }
-    let row = |a: &Vec<DVec3>| {
-        let all = patches.iter().enumerate().map(|(j, b)| (j as u32, polygon_to_polygon(a, b)));
-        all.filter(|(_, f)| *f > 0.0).collect()
-    };
-    let areas = vec![1.0 / (k * k) as f64; patches.len()];
-    (areas, FormFactors::from_exact_rows(patches.iter().map(row).collect()))
-}
-
-/// Every entry with independent normal noise of 3 %.
-fn noisy(truth: &FormFactors, random: &mut Random) -> FormFactors {
-    let mut f = truth.clone();
-    let errors: Vec<f64> = truth.values.iter().map(|v| 0.03 * v).collect();
-    f.values.iter_mut().zip(&errors).for_each(|(v, e)| *v += e * random.normal());
-    f.std_err = Some(errors);
-    f
-}
-
 fn rms_error(f: &FormFactors, truth: &FormFactors) -> f64 {
     let squares = (0..truth.n).flat_map(|i| truth.row(i).map(move |(j, v)| (f.get(i, j) - v).powi(2)));
     (squares.sum::<f64>() / truth.stored() as f64).sqrt()
@@ -122,7 +79,7 @@ fn the_truth_stays_as_it_is() {
 #[test]
 fn enforcement_takes_noise_away_and_closes_to_rounding() {
     let (areas, truth) = cube(3);
-    let given = noisy(&truth, &mut Random::new(5));
+    let given = noisy(&truth, &mut Random(5));
     let done = enforce(&given, &bare(&areas, true));
     let (before, after) = (rms_error(&given, &truth), rms_error(&done.form_factors, &truth));
     println!("cube of 54 patches: rms error {before:.2e} to {after:.2e}; {:?}", done.info);
@@ -142,7 +99,7 @@ fn enforcement_takes_noise_away_and_closes_to_rounding() {
 fn stated_errors_cover_and_the_fit_is_chi_square() {
     let (areas, truth) = cube(2);
     let around = bare(&areas, true);
-    let mut random = Random::new(77);
+    let mut random = Random(77);
     let (runs, mut moved) = (200, 0.0);
     let watched = [(0, 4), (0, 9), (3, 17), (12, 22)];
     let mut squares = [0.0; 4];
@@ -184,7 +141,7 @@ fn a_never_hit_pair_stays_at_zero_where_closure_can_be_met() {
 #[test]
 fn the_bound_of_one_row_is_above_the_propagated_error() {
     let (areas, truth) = cube(2);
-    let pairs = combine(&noisy(&truth, &mut Random::new(3)), &bare(&areas, true));
+    let pairs = combine(&noisy(&truth, &mut Random(3)), &bare(&areas, true));
     let (holds, binds) = (vec![true; pairs.len()], vec![true; areas.len()]);
     let (left, exact) = variances(&pairs, &holds, &binds);
     assert!(exact);
