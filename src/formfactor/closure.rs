@@ -160,8 +160,8 @@ impl Judge {
         let row = |row: usize| {
             let defect = off[row];
             let errors = f.std_err.as_ref().filter(|_| self.threshold.is_some());
-            let std_err = errors
-                .map(|e| e[f.row_starts[row]..f.row_starts[row + 1]].iter().map(|e| e * e).sum::<f64>().sqrt());
+            let std_err =
+                errors.map(|e| e[f.row_starts[row]..f.row_starts[row + 1]].iter().map(|e| e * e).sum::<f64>().sqrt());
             // An error of 0 is rounding in truth.
             let sigmas = std_err.map(|e| defect / e.hypot(1e-15));
             RowDefect { row, defect, std_err, sigmas, broken: self.breaks(defect, sigmas) }

@@ -109,6 +109,28 @@ fn grains(own: [Option<f64>; 2], typical: [Option<f64>; 2]) -> (f64, f64) {
     (of(0), of(1))
 }
 
+/// Gives a matrix the standard errors that stand in a second one at the same places. An entry that has none there is
+/// given the typical noise of its row (0 where the whole row has none): missing is not zero. Also says how many.
+pub fn attach_errors(f: FormFactors, errors: &FormFactors, areas: &[f64]) -> (FormFactors, usize) {
+    let rows = 0..f.n;
+    let stated =
+        rows.flat_map(|i| f.row(i).map(move |(j, _)| if errors.holds(i, j) { errors.get(i, j) } else { f64::NAN }));
+    let stated = stated.collect();
+    let mut f = FormFactors { std_err: Some(stated), ..f };
+    let typical: Vec<f64> = (0..f.n).map(|i| typical_grain(&f, areas[i], i).unwrap_or(0.0)).collect();
+    let mut missing = 0;
+    for i in 0..f.n {
+        for k in f.row_starts[i]..f.row_starts[i + 1] {
+            let guess = if areas[i] > 0.0 { (typical[i] * f.values[k].abs() / areas[i]).sqrt() } else { 0.0 };
+            if let Some(se) = f.std_err.as_mut().and_then(|e| e.get_mut(k)).filter(|se| se.is_nan()) {
+                *se = guess;
+                missing += 1;
+            }
+        }
+    }
+    (f, missing)
+}
+
 /// The median of the grains of a row that are above 0.
 fn typical_grain(f: &FormFactors, area: f64, i: usize) -> Option<f64> {
     let mut all: Vec<f64> = f.row(i).filter_map(|(j, _)| grain(f, area, i, j)).filter(|g| *g > 0.0).collect();
@@ -138,14 +160,19 @@ mod tests {
     fn counts_by_rays_are_pooled_as_counts() {
         // 1 and 5 hits of 1000 rays each, variances as large as the counts: 3 hits, not the 1.67 that weighing each
         // by its own variance gives.
-        let f = FormFactors::from_rows(vec![vec![(1, 0.001, 0.001)], vec![(0, 0.005, 0.005f64.sqrt() / 1000f64.sqrt())]]);
+        let f =
+            FormFactors::from_rows(vec![vec![(1, 0.001, 0.001)], vec![(0, 0.005, 0.005f64.sqrt() / 1000f64.sqrt())]]);
         assert!((combine(&f, &around(&[1.0, 1.0]))[0].value - 0.003).abs() < 1e-15);
     }
 
     #[test]
     fn what_one_direction_never_hit_counts_as_nothing_seen() {
         let se = |hits: f64| hits.sqrt() / 1000.0;
-        let rows = vec![vec![(1, 0.004, se(4.0)), (2, 0.3, se(300.0))], vec![], vec![(0, 0.3, se(300.0)), (1, 0.1, se(100.0))]];
+        let rows = vec![
+            vec![(1, 0.004, se(4.0)), (2, 0.3, se(300.0))],
+            vec![],
+            vec![(0, 0.3, se(300.0)), (1, 0.1, se(100.0))],
+        ];
         let pairs = combine(&FormFactors::from_rows(rows), &around(&[1.0, 1.0, 1.0]));
         // Row 1 states nothing: the grain of its partner is taken for it.
         assert!((pairs[0].value - 0.002).abs() < 1e-12, "{pairs:?}");
@@ -155,7 +182,8 @@ mod tests {
     #[test]
     fn a_zero_beside_an_uncertain_partner_is_no_certainty() {
         let se = |hits: f64| hits.sqrt() / 1000.0;
-        let rows = vec![vec![(1, 0.016, 0.0), (2, 0.1, se(100.0))], vec![(0, 0.02, se(20.0))], vec![(0, 0.1, se(100.0))]];
+        let rows =
+            vec![vec![(1, 0.016, 0.0), (2, 0.1, se(100.0))], vec![(0, 0.02, se(20.0))], vec![(0, 0.1, se(100.0))]];
         let pairs = combine(&FormFactors::from_rows(rows), &around(&[1.0, 1.0, 1.0]));
         assert!((pairs[0].value - 0.018).abs() < 1e-12, "{pairs:?}");
         let exact = FormFactors::from_rows(vec![vec![(1, 0.5, 0.0)], vec![(0, 0.5, 0.0)]]);

@@ -63,9 +63,7 @@ pub(super) fn impossible(
     let stride = f.stored().div_ceil(COMPARED).max(1);
     let look = |i: usize| -> Vec<(Reason, f64, Entry)> {
         let errors = f.std_err.as_ref().filter(|_| threshold.is_some());
-        let entry = |k: usize| {
-            Entry { i, j: f.columns[k] as usize, value: f.values[k], std_err: errors.map(|e| e[k]) }
-        };
+        let entry = |k: usize| Entry { i, j: f.columns[k] as usize, value: f.values[k], std_err: errors.map(|e| e[k]) };
         let judged = (f.row_starts[i]..f.row_starts[i + 1]).filter_map(|k| {
             let e = entry(k);
             let (reason, excess) = reason(&e, around, k % stride == 0)?;

@@ -26,6 +26,7 @@ mod thin;
 pub use closure::{PairDefect, Physics, RowDefect, Rule, Tested, examine};
 pub use defect::{Groups, Reciprocity, reciprocity};
 pub use enforce::{Enforced, Enforcement, ErrorsAfter, UnmetRow, Weights, enforce};
+pub use exchanges::attach_errors;
 pub use impossible::{Impossible, Reason};
 pub use lambert::point_to_polygon;
 pub use mistake::{Layout, Mistake, undo};

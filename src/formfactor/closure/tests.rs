@@ -139,8 +139,7 @@ fn impossible_entries_are_listed_by_reason_and_taken_out() {
     let given = FormFactors::from_exact_rows(rows);
     let physics = judged(&given, &around(&patches, true));
     let reasons: Vec<Reason> = physics.impossible.iter().map(|i| i.reason).collect();
-    let all =
-        [Reason::Negative, Reason::AboveOne, Reason::SeesItself, Reason::FacingAway, Reason::AboveUnobstructed];
+    let all = [Reason::Negative, Reason::AboveOne, Reason::SeesItself, Reason::FacingAway, Reason::AboveUnobstructed];
     assert_eq!(reasons, all);
     assert!(physics.impossible.iter().all(|i| i.entries == 1 && i.broken == 1), "{:?}", physics.impossible);
     let done = enforce(&given, &around(&patches, true));
