@@ -1,7 +1,7 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
 use super::values::{Fraction, PerLevel, Pixels, Quantity, Span, StateChoice};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Ray-traced reference validator and error metrics for radiosity and view factors.
@@ -191,15 +191,41 @@ pub struct FormFactorsArgs {
 }
 
 /// `etalon form-factors ...`: cast a matrix, or look at one that is there.
-#[derive(Debug, Args)]
-#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct FormFactorsCommand {
-    /// What to do with a matrix that is there.
-    #[command(subcommand)]
-    pub matrix: Option<MatrixCommand>,
+#[derive(Debug)]
+pub enum FormFactorsCommand {
     /// Cast one.
-    #[command(flatten)]
-    pub cast: Option<FormFactorsArgs>,
+    Cast(FormFactorsArgs),
+    /// One that is there.
+    Matrix(MatrixCommand),
+}
+
+// By hand: the derived version of "arguments of its own or a subcommand" drops the arguments.
+impl Args for FormFactorsCommand {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        MatrixCommand::augment_subcommands(FormFactorsArgs::augment_args(command))
+            .subcommand_required(false)
+            .arg_required_else_help(false)
+            .args_conflicts_with_subcommands(true)
+            .subcommand_negates_reqs(true)
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for FormFactorsCommand {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        match matches.subcommand_name() {
+            Some(_) => MatrixCommand::from_arg_matches(matches).map(Self::Matrix),
+            None => FormFactorsArgs::from_arg_matches(matches).map(Self::Cast),
+        }
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 /// What is done with a form-factor matrix of any tool.
@@ -207,7 +233,7 @@ pub struct FormFactorsCommand {
 pub enum MatrixCommand {
     /// Row sums, reciprocity, impossible entries, classic mistakes. Exit 1 if the matrix breaks physics for sure.
     Check(FormFactorsCheckArgs),
-    /// The most likely matrix that is closed, reciprocal and nowhere negative.
+    /// The most likely matrix that is closed, reciprocal and nowhere negative. Exit 1 if a row could not be closed.
     Repair(FormFactorsRepairArgs),
 }
 

@@ -15,7 +15,7 @@ mod scene;
 mod solve;
 mod told;
 
-use super::args::{Cli, Command, MatrixCommand};
+use super::args::{Cli, Command, FormFactorsCommand, MatrixCommand};
 use super::console::Console;
 use super::exit::Failure;
 
@@ -24,14 +24,13 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
     let kernel = inputs::kernel_kind(cli.global.kernel);
     match &cli.command {
         Command::Scene(command) => scene::run(command, console),
-        Command::FormFactors(command) => match (&command.matrix, &command.cast) {
-            (Some(MatrixCommand::Check(args)), _) => form_factors_check::run(args, kernel, console),
-            (Some(MatrixCommand::Repair(args)), _) => form_factors_repair::run(args, kernel, console),
-            (None, Some(args)) => form_factors::run(args, kernel, console),
-            (None, None) => {
-                Err(Failure::input("form-factors needs a scene and -o FILE, or check FILE, or repair FILE"))
-            }
-        },
+        Command::FormFactors(FormFactorsCommand::Cast(args)) => form_factors::run(args, kernel, console),
+        Command::FormFactors(FormFactorsCommand::Matrix(MatrixCommand::Check(args))) => {
+            form_factors_check::run(args, kernel, console)
+        }
+        Command::FormFactors(FormFactorsCommand::Matrix(MatrixCommand::Repair(args))) => {
+            form_factors_repair::run(args, kernel, console)
+        }
         Command::Reference(args) => reference::run(args, kernel, console),
         Command::Solve(args) => solve::run(args, kernel, console),
         Command::Compare(args) => check::compare(args, cli.global.kernel, console),

@@ -7,9 +7,9 @@ use crate::scene::Patch;
 use crate::stats::test_random::Random;
 use std::f64::consts::PI;
 
-/// A room of 1 x 2 x 3 m: 22 patches of unlike areas.
+/// A room of 1.5 x 2 x 3.6 m: 22 patches of unlike areas.
 fn room() -> (Vec<Patch>, FormFactors) {
-    box_room([1.0, 2.0, 3.0], [1, 2, 3])
+    box_room([1.5, 2.0, 3.6], [1, 2, 3])
 }
 
 fn around(patches: &[Patch], closed: bool) -> Surroundings<'_> {
