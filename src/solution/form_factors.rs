@@ -66,6 +66,11 @@ impl FormFactors {
         self.columns[range.clone()].binary_search(&(j as u32)).ok().map(|k| k + range.start)
     }
 
+    /// True if the pair is stored.
+    pub fn holds(&self, i: usize, j: usize) -> bool {
+        self.find(i, j).is_some()
+    }
+
     /// Form factor of a pair; 0 where none is stored.
     pub fn get(&self, i: usize, j: usize) -> f64 {
         self.find(i, j).map_or(0.0, |k| self.values[k])

@@ -3,6 +3,9 @@
 mod check;
 mod demo;
 mod form_factors;
+mod form_factors_check;
+mod form_factors_repair;
+mod form_factors_told;
 mod inputs;
 mod machine;
 mod reference;
@@ -12,7 +15,7 @@ mod scene;
 mod solve;
 mod told;
 
-use super::args::{Cli, Command};
+use super::args::{Cli, Command, FormFactorsCommand, MatrixCommand};
 use super::console::Console;
 use super::exit::Failure;
 
@@ -21,7 +24,13 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
     let kernel = inputs::kernel_kind(cli.global.kernel);
     match &cli.command {
         Command::Scene(command) => scene::run(command, console),
-        Command::FormFactors(args) => form_factors::run(args, kernel, console),
+        Command::FormFactors(FormFactorsCommand::Cast(args)) => form_factors::run(args, kernel, console),
+        Command::FormFactors(FormFactorsCommand::Matrix(MatrixCommand::Check(args))) => {
+            form_factors_check::run(args, kernel, console)
+        }
+        Command::FormFactors(FormFactorsCommand::Matrix(MatrixCommand::Repair(args))) => {
+            form_factors_repair::run(args, kernel, console)
+        }
         Command::Reference(args) => reference::run(args, kernel, console),
         Command::Solve(args) => solve::run(args, kernel, console),
         Command::Compare(args) => check::compare(args, cli.global.kernel, console),
