@@ -66,14 +66,14 @@ pub struct Reference {
 }
 
 /// Emission and reflectance of every patch, row-major.
-struct Inputs {
-    emission: Vec<f64>,
-    reflectance: Vec<f64>,
-    bands: usize,
+pub(super) struct Inputs {
+    pub(super) emission: Vec<f64>,
+    pub(super) reflectance: Vec<f64>,
+    pub(super) bands: usize,
 }
 
 impl Inputs {
-    fn of(stage: &Stage) -> Self {
+    pub(super) fn of(stage: &Stage) -> Self {
         Self { bands: stage.band_count(), emission: stage.emissions(), reflectance: stage.reflectances() }
     }
 
@@ -214,7 +214,7 @@ fn pseudo_values(mean: &[f64], left_out: &[f64], bands: usize, r: u16) -> Replic
 }
 
 /// sqrt(sum A se^2) / sqrt(sum A Y^2), luminances.
-fn relative_noise(stage: &Stage, replicates: &Replicates) -> f64 {
+pub(super) fn relative_noise(stage: &Stage, replicates: &Replicates) -> f64 {
     let r = replicates.count() as f64;
     let (mut noise, mut signal) = (0.0, 0.0);
     for (i, patch) in stage.patches.iter().enumerate() {

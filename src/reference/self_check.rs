@@ -2,12 +2,13 @@
 
 use crate::estimate::HitCounts;
 use crate::formfactor::{Groups, Reciprocity, reciprocity};
+use crate::raycast::Tally;
 use crate::scene::Stage;
 use crate::solution::{Check, SelfCheck};
 use crate::stats::t_p_value;
 
 /// False alarms allowed per run and statistical check.
-const FALSE_ALARM: f64 = 1e-6;
+pub(super) const FALSE_ALARM: f64 = 1e-6;
 /// Largest relative error of radiosity that leaks of a declared enclosure may cause.
 const LEAK_LIMIT: f64 = 1e-4;
 /// Share of re-traced rays, away from edges, on which two kernels may disagree.
@@ -41,7 +42,7 @@ pub(super) fn run(
 ) -> SelfCheck {
     SelfCheck {
         checks: vec![
-            leaks(stage, counts, enclosure, evidence.declared_enclosure),
+            leaks_of(stage, &counts.tally, enclosure, evidence.declared_enclosure),
             witness(evidence),
             exchange(stage, &test_reciprocity(stage, counts)),
             energy(stage, counts, mean),
@@ -50,7 +51,7 @@ pub(super) fn run(
     }
 }
 
-fn check(name: &str, passed: bool, finding: String) -> Check {
+pub(super) fn check(name: &str, passed: bool, finding: String) -> Check {
     Check { name: name.into(), passed, finding }
 }
 
@@ -63,8 +64,7 @@ pub fn test_reciprocity(stage: &Stage, counts: &HitCounts) -> Reciprocity {
     reciprocity(&flows, groups.count, largest / counts.rays as f64)
 }
 
-fn leaks(stage: &Stage, counts: &HitCounts, enclosure: bool, declared: bool) -> Check {
-    let t = counts.tally;
+pub(super) fn leaks_of(stage: &Stage, t: &Tally, enclosure: bool, declared: bool) -> Check {
     let share = (t.escapes + t.back_hits) as f64 / t.rays.max(1) as f64;
     let brightest = stage.materials.iter().flat_map(|m| &m.reflectance).copied().fold(0.0, f64::max);
     // Each bounce loses `share`; a series of bounces at the highest reflectance sums them.
@@ -80,7 +80,7 @@ fn leaks(stage: &Stage, counts: &HitCounts, enclosure: bool, declared: bool) -> 
     check("leaks", passed, format!("{consequence}{verdict}"))
 }
 
-fn witness(e: &Evidence) -> Check {
+pub(super) fn witness(e: &Evidence) -> Check {
     let Some(name) = &e.witness else {
         return check("second kernel", true, "not available: no second ray kernel on this machine".into());
     };
@@ -145,6 +145,6 @@ fn relative_mean(d: &[f64], scale: f64) -> (f64, f64) {
 }
 
 /// Two-sided p; 1 where mean and error are both rounding.
-fn t_or_one(mean: f64, std_err: f64, r: usize) -> f64 {
+pub(super) fn t_or_one(mean: f64, std_err: f64, r: usize) -> f64 {
     if mean.abs() <= 1e-12 && std_err <= 1e-12 { 1.0 } else { t_p_value(mean, std_err, r as f64 - 1.0) }
 }

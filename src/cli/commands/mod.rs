@@ -10,6 +10,7 @@ mod render;
 mod report;
 mod scene;
 mod solve;
+mod split;
 mod told;
 
 use super::args::{Cli, Command};
