@@ -206,7 +206,7 @@ pub struct ReferenceArgs {
     /// Compute it even if DIR already holds a reference that would do.
     #[arg(long)]
     pub force: bool,
-    /// Which truth.
+    /// Which truth. For continuous, --rays counts paths, and an interrupted run begins again.
     #[arg(long, value_enum, default_value_t = Truth::PatchSystem)]
     pub truth: Truth,
 }

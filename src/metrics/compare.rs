@@ -349,6 +349,8 @@ mod tests {
             "reference_noise_floor",
             "solution_noise",
             "emitter_share",
+            "scale",
+            "scale_of_total",
             "patches",
             "worst",
         ];
