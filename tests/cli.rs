@@ -117,7 +117,6 @@ fn bad_usage_and_bad_input_end_with_two_and_one_message() {
         ("reference builtin:nowhere -o x", "nowhere"),
         ("reference builtin:furnace -o x --randomisations 4", "8"),
         ("reference builtin:furnace -o x --target-error 0", "above 0"),
-        ("reference builtin:furnace -o x --truth continuous", "continuous"),
         ("reference builtin:furnace -o x --state 7", "7"),
         ("reference builtin:furnace -o notes.txt", "notes.txt"),
         ("form-factors builtin:furnace -o f.xls", "ending"),

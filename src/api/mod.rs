@@ -10,8 +10,8 @@ mod options;
 mod reference;
 mod scene;
 
-pub use check::Check;
 pub use crate::estimate::Estimator;
+pub use check::Check;
 pub use error::Error;
 pub use options::ReferenceOptions;
 pub use reference::Reference;

@@ -36,6 +36,18 @@ impl Reference {
         Ok(Self { stored, seconds: begin.elapsed().as_secs_f64() })
     }
 
+    /// Follows the judge's paths in a stage: the true mean radiosity of each patch, no patch taken for evenly bright.
+    /// The rays of `options` are paths per patch.
+    ///
+    /// # Errors
+    /// As [`Reference::compute`].
+    pub fn compute_continuous(stage: &Stage, options: &ReferenceOptions) -> Result<Self, Error> {
+        let begin = Instant::now();
+        let session = Session::open(stage, options.kernel)?;
+        let (stored, _) = study::continuous_reference(&session, &options.options, &Silent)?;
+        Ok(Self { stored, seconds: begin.elapsed().as_secs_f64() })
+    }
+
     /// Opens a reference directory and verifies every byte of it.
     ///
     /// # Errors

@@ -301,7 +301,7 @@ pub struct ReferenceArgs {
     /// Compute it even if DIR already holds a reference that would do.
     #[arg(long)]
     pub force: bool,
-    /// Which truth.
+    /// Which truth. For continuous, --rays counts paths, and an interrupted run begins again.
     #[arg(long, value_enum, default_value_t = Truth::PatchSystem)]
     pub truth: Truth,
 }
@@ -370,6 +370,13 @@ pub struct CompareArgs {
     /// The truth asked for: has to be the one the reference holds.
     #[arg(long, value_enum)]
     pub truth: Option<Truth>,
+    /// The form factors the solution was computed with (.npz, .csv, .mtx): tells errors of the solver from errors of
+    /// the form factors.
+    #[arg(long, value_name = "FILE")]
+    pub form_factors: Option<PathBuf>,
+    /// A patch-system reference beside a continuous one: tells apart what the division into patches costs.
+    #[arg(long, value_name = "DIR")]
+    pub patch_system: Option<PathBuf>,
     /// Write the HTML report here.
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,

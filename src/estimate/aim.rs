@@ -18,7 +18,7 @@ pub(super) fn fill(rays: &mut RayBatch, net: &Net, first: usize, emitter: &Emitt
 
 /// Middle of a 31-bit cell.
 #[inline]
-fn unit(x: i32) -> f64 {
+pub(super) fn unit(x: i32) -> f64 {
     (f64::from(x) + 0.5) * f64::powi(2.0, -31)
 }
 

@@ -4,6 +4,7 @@ use super::bias::relative_bias;
 use super::error::MetricsError;
 use super::quantity::{Quantity, mean_of};
 use super::rms::{Rms, relative_rms};
+use super::scale::{Scale, fit_scale};
 use super::top1::top1_rms;
 use super::types::{Comparison, Judged, Truth, WorstPatch};
 use crate::math::compensated_sum;
@@ -56,6 +57,8 @@ pub fn compare(
         reference_noise_floor: main.reference_noise_floor(),
         solution_noise: solution.std_err.as_ref().map(|e| main.solution_noise(e)),
         emitter_share: whole.emitter_share(),
+        scale: beyond_emission.scale(),
+        scale_of_total: whole.scale(),
         patches: judged.areas.iter().filter(|a| **a > 0.0).count(),
         worst: main.worst(),
     })
@@ -101,6 +104,10 @@ impl<'a> View<'a> {
 
     fn rms(&self) -> Rms {
         relative_rms(self.judged.areas, &self.solution, &self.reference, self.confidence)
+    }
+
+    fn scale(&self) -> Option<Scale> {
+        fit_scale(self.judged.areas, &self.solution, &self.reference, self.confidence)
     }
 
     fn top1(&self, after: &[Vec<f64>], before: &[Vec<f64>]) -> Rms {
@@ -342,6 +349,8 @@ mod tests {
             "reference_noise_floor",
             "solution_noise",
             "emitter_share",
+            "scale",
+            "scale_of_total",
             "patches",
             "worst",
         ];

@@ -1,5 +1,6 @@
 //! What goes into a comparison and what comes out.
 
+use super::scale::Scale;
 use crate::solution::{Radiosity, Replicates};
 use crate::stats::Estimate;
 use serde::{Deserialize, Serialize};
@@ -52,6 +53,12 @@ pub struct Comparison {
     pub solution_noise: Option<f64>,
     /// Share of patches with emission in the denominator of eq. 7 of B, emission included, whatever is judged.
     pub emitter_share: f64,
+    /// The factor by which reflected light is too bright everywhere; `None` where nothing is reflected.
+    #[serde(default)]
+    pub scale: Option<Scale>,
+    /// The same with emission included.
+    #[serde(default)]
+    pub scale_of_total: Option<Scale>,
     /// Patches present in the judged state.
     pub patches: usize,
     /// Up to ten patches with the largest |difference|.

@@ -85,6 +85,8 @@ mod tests {
             reference_noise_floor: None,
             solution_noise: None,
             emitter_share: 0.0,
+            scale: None,
+            scale_of_total: None,
             patches: 1,
             worst: vec![],
         }

@@ -122,7 +122,8 @@ fn open_rim(loops: &[Vec<u32>]) -> Option<Vec<u32>> {
             half.insert((l[k], l[(k + 1) % l.len()]));
         });
     }
-    let open: BTreeMap<u32, u32> = half.iter().filter(|(a, b)| !half.contains(&(*b, *a))).map(|(a, b)| (*b, *a)).collect();
+    let open: BTreeMap<u32, u32> =
+        half.iter().filter(|(a, b)| !half.contains(&(*b, *a))).map(|(a, b)| (*b, *a)).collect();
     let start = *open.keys().next()?;
     let mut rim = vec![start];
     let mut at = open[&start];

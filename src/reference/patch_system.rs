@@ -4,7 +4,9 @@ use super::ReferenceError;
 use super::pair_check;
 use super::self_check::{self, Evidence};
 use super::transport::LeaveOneOut;
-use crate::estimate::{Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, PairTally, Plan};
+use crate::estimate::{
+    Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, PairTally, Plan,
+};
 use crate::estimate::{cast_on, element_emitters, patch_emitters, settle};
 use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
@@ -73,14 +75,14 @@ pub struct Reference {
 }
 
 /// Emission and reflectance of every patch, row-major.
-struct Inputs {
-    emission: Vec<f64>,
-    reflectance: Vec<f64>,
-    bands: usize,
+pub(super) struct Inputs {
+    pub(super) emission: Vec<f64>,
+    pub(super) reflectance: Vec<f64>,
+    pub(super) bands: usize,
 }
 
 impl Inputs {
-    fn of(stage: &Stage) -> Self {
+    pub(super) fn of(stage: &Stage) -> Self {
         Self { bands: stage.band_count(), emission: stage.emissions(), reflectance: stage.reflectances() }
     }
 
@@ -253,7 +255,7 @@ fn pseudo_values(mean: &[f64], left_out: &[f64], bands: usize, r: u16) -> Replic
 }
 
 /// sqrt(sum A se^2) / sqrt(sum A Y^2), luminances.
-fn relative_noise(stage: &Stage, replicates: &Replicates) -> f64 {
+pub(super) fn relative_noise(stage: &Stage, replicates: &Replicates) -> f64 {
     let r = replicates.count() as f64;
     let (mut noise, mut signal) = (0.0, 0.0);
     for (i, patch) in stage.patches.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use crate::estimate::HitCounts;
 use crate::formfactor::{Groups, Reciprocity, reciprocity};
+use crate::raycast::Tally;
 use crate::scene::Stage;
 use crate::solution::{Check, SelfCheck};
 use crate::stats::t_p_value;
@@ -41,7 +42,7 @@ pub(super) fn run(
 ) -> SelfCheck {
     SelfCheck {
         checks: vec![
-            leaks(stage, counts, enclosure, evidence.declared_enclosure),
+            leaks_of(stage, &counts.tally, enclosure, evidence.declared_enclosure),
             witness(evidence),
             exchange(stage, &test_reciprocity(stage, counts)),
             energy(stage, counts, mean),
@@ -64,8 +65,7 @@ pub fn test_reciprocity(stage: &Stage, counts: &HitCounts) -> Reciprocity {
     reciprocity(&flows, groups.count, largest / counts.rays as f64)
 }
 
-fn leaks(stage: &Stage, counts: &HitCounts, enclosure: bool, declared: bool) -> Check {
-    let t = counts.tally;
+pub(super) fn leaks_of(stage: &Stage, t: &Tally, enclosure: bool, declared: bool) -> Check {
     let share = (t.escapes + t.back_hits) as f64 / t.rays.max(1) as f64;
     let brightest = stage.materials.iter().flat_map(|m| &m.reflectance).copied().fold(0.0, f64::max);
     // Each bounce loses `share`; a series of bounces at the highest reflectance sums them.
@@ -81,7 +81,7 @@ fn leaks(stage: &Stage, counts: &HitCounts, enclosure: bool, declared: bool) -> 
     check("leaks", passed, format!("{consequence}{verdict}"))
 }
 
-fn witness(e: &Evidence) -> Check {
+pub(super) fn witness(e: &Evidence) -> Check {
     let Some(name) = &e.witness else {
         return check("second kernel", true, "not available: no second ray kernel on this machine".into());
     };
@@ -172,7 +172,7 @@ fn relative_mean(d: &[f64], scale: f64) -> (f64, f64) {
 }
 
 /// Two-sided p; 1 where mean and error are both rounding.
-fn t_or_one(mean: f64, std_err: f64, r: usize) -> f64 {
+pub(super) fn t_or_one(mean: f64, std_err: f64, r: usize) -> f64 {
     if mean.abs() <= 1e-12 && std_err <= 1e-12 { 1.0 } else { t_p_value(mean, std_err, r as f64 - 1.0) }
 }
 

@@ -1,8 +1,8 @@
 //! The verdict in one sentence, and what the reader has to be warned of.
 
 use super::asked::{Level, is_reflected};
-use super::format::{confidence, is_known, percent, percent_estimate, percent_exact};
-use crate::metrics::{LimitOutcome, Verdict};
+use super::format::{confidence, is_known, percent, percent_estimate, percent_exact, significant};
+use crate::metrics::{Comparison, LimitOutcome, Verdict};
 use crate::stats::Estimate;
 use crate::study::Record;
 
@@ -114,6 +114,7 @@ pub fn warnings(record: &Record) -> Vec<(String, String)> {
         );
         all.push(("The lamps outshine the rest".into(), text));
     }
+    all.extend(scale_warning(c));
     if let (Some(floor), Some(decision)) = (c.reference_noise_floor, &record.decision)
         && let Some(tight) = decision.limits.iter().map(|l| l.limit).reduce(f64::min)
         && floor > tight
@@ -127,6 +128,26 @@ pub fn warnings(record: &Record) -> Vec<(String, String)> {
         all.push(("The reference is noisier than the limit".into(), text));
     }
     all
+}
+
+/// A factor that explains most of the error is what a developer looks at first.
+fn scale_warning(c: &Comparison) -> Option<(String, String)> {
+    let total = c.scale_of_total.as_ref().filter(|s| s.explains(c.rms.value)).map(|s| (s, "The solution"));
+    let reflected = || {
+        let rms = c.rms_reflected?.value;
+        c.scale.as_ref().filter(|s| s.explains(rms)).map(|s| (s, "The reflected light of the solution"))
+    };
+    let (scale, what) = total.or_else(reflected)?;
+    let f = &scale.factor;
+    let interval = if f.high > f.low {
+        format!(" ({} interval {} to {})", confidence(c.confidence), significant(f.low, 5), significant(f.high, 5))
+    } else {
+        String::new()
+    };
+    let left = scale.rms_after.map_or(String::new(), |r| format!("; without that factor {} are left", percent(r)));
+    let named = scale.named.as_ref().map_or(String::new(), |n| format!(". The ratio is {n}"));
+    let text = format!("{what} is {} times the reference{interval}{left}{named}.", significant(f.value, 4));
+    Some(("One factor explains most of the error".into(), text))
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod junit;
 mod layers;
 mod lines;
 mod markdown;
+mod split;
 #[cfg(test)]
 mod testing;
 mod text;

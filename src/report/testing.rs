@@ -37,6 +37,8 @@ pub(crate) fn record() -> Record {
         reference_noise_floor: Some(0.00062),
         solution_noise: None,
         emitter_share: 0.43,
+        scale: None,
+        scale_of_total: None,
         patches: stage.patch_count(),
         worst: worst.collect(),
     };
@@ -49,6 +51,7 @@ pub(crate) fn record() -> Record {
         solution_name: "point-lamps".into(),
         comparison,
         decision: None,
+        split: None,
         truth: "patch-system".into(),
         settings: vec![
             Setting::new(Part::Judgement, "--confidence", 0.95, 0.95),

@@ -4,6 +4,7 @@ use super::asked::Level;
 use super::format::printable;
 use super::headline::{headline, verdict_word, warnings};
 use super::lines::{metric_lines, worst_lines, worst_title};
+use super::split::split_lines;
 use super::{Artifact, Exporter, Extras, ReportError};
 use crate::metrics::Verdict;
 use crate::study::Record;
@@ -36,6 +37,13 @@ pub fn text_summary(record: &Record, colour: bool) -> String {
     out += &table(&metrics.collect::<Vec<_>>(), [false, true, false, false, false]);
     for (title, text) in warnings(record) {
         out += &format!("\n{}: {}\n", paint("warning", YELLOW, colour), printable(&format!("{title}. {text}")));
+    }
+    let parts = split_lines(record);
+    if !parts.is_empty() {
+        out +=
+            &format!("\n{}\n", paint("Where the error comes from (signed parts; their norms do not add)", DIM, colour));
+        let parts: Vec<_> = parts.into_iter().map(|p| p.map(|cell| printable(&cell))).collect();
+        out += &table(&parts, [false, true, false, false, false]);
     }
     let worst = worst_lines(record);
     if !worst.is_empty() {

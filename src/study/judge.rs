@@ -22,6 +22,8 @@ pub struct Receivers {
     pub objects: Vec<String>,
     /// Bands and weights.
     pub photometry: Photometry,
+    /// The reflectance that everything that reflects has in every band, if it is one.
+    pub uniform_reflectance: Option<f64>,
 }
 
 impl Receivers {
@@ -43,6 +45,18 @@ impl Receivers {
             surfaces: receivers.iter().map(|(i, _)| surface(*i).name.clone()).collect(),
             objects: receivers.iter().map(|(i, _)| surface(*i).object.clone()).collect(),
             photometry: stage.photometry.clone(),
+            uniform_reflectance: uniform_reflectance(stage),
+        }
+    }
+
+    /// As the metrics take them.
+    pub(super) fn judged<'a>(&'a self, surfaces: &'a [&'a str]) -> Judged<'a> {
+        Judged {
+            areas: &self.areas,
+            emission: &self.emission,
+            surfaces,
+            bands: &self.photometry.bands,
+            weights: &self.photometry.weights,
         }
     }
 
@@ -50,6 +64,14 @@ impl Receivers {
     pub fn present(&self) -> Vec<bool> {
         self.areas.iter().map(|a| *a > 0.0).collect()
     }
+}
+
+/// The one reflectance of all that reflects.
+fn uniform_reflectance(stage: &Stage) -> Option<f64> {
+    let all = stage.reflectances();
+    let mut reflecting = all.iter().copied().filter(|rho| *rho > 0.0);
+    let first = reflecting.next()?;
+    reflecting.all(|rho| (rho - first).abs() <= 1e-9).then_some(first)
 }
 
 /// A stage that knows nothing but how many receivers there are, all of equal weight: for two solutions that come
@@ -157,9 +179,14 @@ pub fn judge(
     let truth = reference.truth(question.per_element)?;
     let before = before.map(|b| b.truth(question.per_element)).transpose()?;
     let surfaces = names(&receivers.surfaces);
-    let judged = judged(receivers, &surfaces);
+    let judged = receivers.judged(&surfaces);
     let confidence = question.shared_confidence();
-    let comparison = compare(solution, &truth, before.as_ref(), &judged, confidence, question.reflected)?;
+    let mut comparison = compare(solution, &truth, before.as_ref(), &judged, confidence, question.reflected)?;
+    if let (Some(scale), Some(rms), Some(rho)) =
+        (&mut comparison.scale, comparison.rms_reflected, receivers.uniform_reflectance)
+    {
+        scale.name_by_reflectance(rho, rms.value);
+    }
     let decision = question.limits.map(|l| decide(&comparison, &l));
     Ok(Judgement { comparison, decision })
 }
@@ -173,21 +200,11 @@ pub fn break_down(
 ) -> Result<Breakdown, JudgeError> {
     let truth = reference.truth(question.per_element)?;
     let (surfaces, objects) = (names(&receivers.surfaces), names(&receivers.objects));
-    let judged = judged(receivers, &surfaces);
+    let judged = receivers.judged(&surfaces);
     let confidence = question.shared_confidence();
     Ok(metrics::break_down(solution, &truth, &judged, &objects, confidence, question.reflected)?)
 }
 
 fn names(all: &[String]) -> Vec<&str> {
     all.iter().map(String::as_str).collect()
-}
-
-fn judged<'a>(receivers: &'a Receivers, surfaces: &'a [&'a str]) -> Judged<'a> {
-    Judged {
-        areas: &receivers.areas,
-        emission: &receivers.emission,
-        surfaces,
-        bands: &receivers.photometry.bands,
-        weights: &receivers.photometry.weights,
-    }
 }

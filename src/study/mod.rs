@@ -7,11 +7,13 @@ mod record;
 mod reuse;
 mod run;
 mod session;
+mod split;
 
 pub use contributions::{Contributions, Rows, Source, contributions};
 pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, break_down, judge};
 pub use kept::KeptWork;
 pub use record::{Part, Record, Setting};
 pub use reuse::falls_short;
-pub use run::{SolveOutcome, SolveRequest, reference, reference_on, solve};
+pub use run::{SolveOutcome, SolveRequest, continuous_reference, reference, reference_on, solve};
 pub use session::Session;
+pub use split::{Beside, SplitError, split_error};

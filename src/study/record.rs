@@ -1,7 +1,7 @@
 //! The finished record of a comparison: all a report needs, nothing left to compute.
 
 use super::Contributions;
-use crate::metrics::{Breakdown, Comparison, Decision};
+use crate::metrics::{Breakdown, Comparison, Decision, Split};
 use crate::scene::{Finding, Stage};
 use crate::solution::Radiosity;
 use serde::{Deserialize, Serialize};
@@ -17,6 +17,9 @@ pub struct Record {
     pub decision: Option<Decision>,
     /// The metrics.
     pub comparison: Comparison,
+    /// Where the error comes from; `None` where nothing tells its parts apart.
+    #[serde(default)]
+    pub split: Option<Split>,
     /// How the error is spread; `None` where no report was asked for.
     pub breakdown: Option<Breakdown>,
     /// What lights the worst patches; empty where no rays can be cast: against another solution, without a scene.

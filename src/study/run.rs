@@ -49,6 +49,32 @@ pub fn reference_on(
     Ok((stored, reference))
 }
 
+/// Computes a reference of the continuous problem with its self-check, ready to be stored. True beside it if a target
+/// error was asked for and not reached.
+///
+/// # Errors
+/// As [`reference()`].
+pub fn continuous_reference(
+    session: &Session,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<(StoredReference, bool), ReferenceError> {
+    let stage = session.stage();
+    let evidence = evidence(session, options.seed);
+    let reference = reference::compute_continuous(&session.tracer(), options, &evidence, progress)?;
+    let stored = StoredReference {
+        stage: stage.clone(),
+        scene_hash: stage.hash(),
+        patches: reference.patches,
+        elements: reference.elements,
+        provenance: reference.provenance,
+        self_check: reference.self_check,
+        waves: reference.waves,
+        findings: Vec::new(),
+    };
+    Ok((stored, reference.missed_target))
+}
+
 /// Traces a sample of rays on both kernels.
 fn evidence(session: &Session, seed: u64) -> Evidence {
     let declared_enclosure = session.stage().enclosure == Some(true);

@@ -1,7 +1,7 @@
 //! `etalon compare` and `etalon check`
 
 use super::report::{Stopwatch, write_report};
-use super::{inputs, told};
+use super::{inputs, split, told};
 use crate::cli::args::{CheckArgs, CompareArgs, Kernel, OnInconclusive, Truth};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
@@ -126,6 +126,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
     if !(0.0..1.0).contains(&args.confidence.0) || args.confidence.0 == 0.0 {
         return Err(Failure::input("--confidence must lie between 0 and 1: 0.95 for example"));
     }
+    split::check(args)?;
     let reference = Input::read(&args.reference)?.trusted(&args.reference, limits.is_some())?;
     let truth = check_truth(args, &reference)?;
     let stage = stage(args, &reference, console)?;
@@ -140,6 +141,8 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
     watch.lap("reading");
     let question = Question { limits, confidence: args.confidence.0, reflected: args.reflected, per_element };
     let judgement = judge(&solution, &against, before.as_ref(), &receivers, &question)?;
+    let confidence = judgement.comparison.confidence;
+    let split = split::split(args, &stage, &solution, &against, &receivers, confidence)?;
     let by_patch = if per_element { by_patch(&solution, &stage) } else { solution.clone() };
     let mut record = Record {
         solution_name: args.solution.display().to_string(),
@@ -147,6 +150,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         decision: judgement.decision,
         comparison: judgement.comparison,
         breakdown: None,
+        split,
         contributions: Vec::new(),
         findings: told::findings(&against),
         notices: told::notices(args, &against),

@@ -68,6 +68,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
         truth: stored.provenance.truth.name().into(),
         decision: judgement.decision,
         comparison: judgement.comparison,
+        split: None,
         breakdown: Some(breakdown),
         contributions: Vec::new(),
         findings: told::findings(&against),

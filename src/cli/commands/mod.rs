@@ -13,6 +13,7 @@ mod render;
 mod report;
 mod scene;
 mod solve;
+mod split;
 mod told;
 
 use super::args::{Cli, Command, FormFactorsCommand, MatrixCommand};

@@ -8,7 +8,7 @@ use crate::cli::interrupt;
 use crate::io::{Claim, FileError, Found, StoredReference};
 use crate::raycast::{KernelInfo, KernelKind, open_kernels};
 use crate::reference::Options;
-use crate::scene::Stage;
+use crate::scene::{Scene, Stage};
 use crate::solution::TruthLevel;
 use crate::study::{self, KeptWork, Session};
 use serde_json::{Value, json};
@@ -20,11 +20,6 @@ use std::time::Instant;
 pub const MARKER: &str = "reference.json";
 
 pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Result<u8, Failure> {
-    if args.truth == Truth::Continuous {
-        return Err(Failure::input(
-            "--truth continuous is not in this version: only patch-system references can be computed",
-        ));
-    }
     let begin = Instant::now();
     let options = Options { plan: inputs::plan(&args.rays)?, seed: args.rays.seed };
     let scene = inputs::scene(&args.scene.scene, args.scene.max_edge, console)?;
@@ -36,6 +31,9 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     }
     let claim = Claim::take(&args.output, MARKER)?;
     let session = inputs::session(&stage, kernel, console)?;
+    if args.truth == Truth::Continuous {
+        return continuous(args, &scene, &session, &options, claim, begin, console);
+    }
     let work = open_work(&claim, &session, &options, console)?;
     let armed = arm(&work);
     let (mut stored, reference) = study::reference_on(&session, &options, console, work.kept())?;
@@ -46,12 +44,35 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     let rows = work.flush();
     claim.publish(&stored.files(seconds)).map_err(|e| keep_in_mind(e, rows))?;
     drop(armed);
-    if reference.missed_target {
+    Ok(finish(args, &stored, reference.missed_target, seconds, console))
+}
+
+/// The continuous problem, by paths. Nothing of an interrupted run is kept: sums of paths are no counts.
+fn continuous(
+    args: &ReferenceArgs,
+    scene: &Scene,
+    session: &Session,
+    options: &Options,
+    claim: Claim,
+    begin: Instant,
+    console: &Console,
+) -> Result<u8, Failure> {
+    let (mut stored, missed_target) = study::continuous_reference(session, options, console)?;
+    stored.findings = inputs::findings(scene, session.stage(), console)?;
+    console.end();
+    let seconds = begin.elapsed().as_secs_f64();
+    claim.publish(&stored.files(seconds))?;
+    Ok(finish(args, &stored, missed_target, seconds, console))
+}
+
+/// Says what came of it.
+fn finish(args: &ReferenceArgs, stored: &StoredReference, missed_target: bool, seconds: f64, console: &Console) -> u8 {
+    if missed_target {
         console.notice(&format!("the target error was not reached: {:.2e}", stored.provenance.relative_error));
     }
-    console.result(&text(&stored, &args.output, "written to"), &summary(&stored, seconds, false));
-    explain_failures(&stored, console);
-    Ok(if stored.self_check.passed() { exit::DONE } else { exit::SELF_CHECK })
+    console.result(&text(stored, &args.output, "written to"), &summary(stored, seconds, false));
+    explain_failures(stored, console);
+    if stored.self_check.passed() { exit::DONE } else { exit::SELF_CHECK }
 }
 
 /// The reference that is stored already, if it answers what is asked.
@@ -75,9 +96,15 @@ fn already_there(
     };
     let kernels = open_kernels(kernel, stage)?;
     let kernel = kernels.kernel.info();
-    match study::falls_short(&stored, stage, options, kernel, TruthLevel::PatchSystem) {
+    let level = match args.truth {
+        Truth::PatchSystem => TruthLevel::PatchSystem,
+        Truth::Continuous => TruthLevel::Continuous,
+    };
+    match study::falls_short(&stored, stage, options, kernel, level) {
         None => {
-            forget_journal(&args.output, stage, kernel, options);
+            if level == TruthLevel::PatchSystem {
+                forget_journal(&args.output, stage, kernel, options);
+            }
             Ok(Some(stored))
         }
         Some(lack) => again(format!("the reference there has {lack}")),
@@ -163,12 +190,13 @@ fn text(r: &StoredReference, output: &Path, what: &str) -> String {
     let p = &r.provenance;
     let mut text = format!(
         "reference of {} ({} patches, state {}) {what} {}\n\
-         {} rays per patch in {} randomisations ({} {}): relative error {:.2e} (one sigma, norm of eq. 7)",
+         {} {} per patch in {} randomisations ({} {}): relative error {:.2e} (one sigma, norm of eq. 7)",
         r.stage.name,
         r.stage.patch_count(),
         r.stage.state,
         output.display(),
         inputs::thousands(p.rays_per_patch),
+        if p.truth == TruthLevel::Continuous { "paths" } else { "rays" },
         p.randomisations,
         p.kernel,
         p.kernel_version,

@@ -7,11 +7,13 @@ use crate::cli::values::{PerLevel, StateChoice};
 use crate::estimate::{Estimator, Plan};
 use crate::reference::Options;
 use crate::scene::{Finding, Stage};
-use crate::solution::Provenance;
+use crate::solution::{Provenance, TruthLevel};
 use crate::study::{Against, Part, Setting};
 
 /// Confidence without being asked.
 pub const CONFIDENCE: f64 = 0.95;
+/// That of the continuous problem.
+const PATHS: &str = "paths";
 
 /// What the scene doctor found when the reference was made.
 pub fn findings(against: &Against) -> Vec<Finding> {
@@ -74,6 +76,8 @@ pub fn settings(asked: &Asked, against: &Against) -> Vec<Setting> {
     }
     let path = |p: &Option<std::path::PathBuf>| p.as_ref().map_or(NONE.to_string(), |p| p.display().to_string());
     out.push(Setting::new(of, "--before", path(&args.before), NONE));
+    out.push(Setting::new(of, "--form-factors", path(&args.form_factors), NONE));
+    out.push(Setting::new(of, "--patch-system", path(&args.patch_system), NONE));
     out.push(Setting::new(of, "--confidence", args.confidence.0, CONFIDENCE));
     out.push(Setting::new(of, "--reflected", args.reflected, false));
     out.push(Setting::new(of, "--per", level(args.per), level(PerLevel::Patch)));
@@ -97,11 +101,14 @@ pub fn of_reference(p: &Provenance, stage: &Stage) -> Vec<Setting> {
     let (of, plan, options) = (Part::Reference, Plan::default(), Options::default());
     vec![
         Setting::given(of, "state", format!("{} edits applied", stage.state)),
-        Setting::new(of, "--truth", p.truth.name(), crate::solution::TruthLevel::default().name()),
+        Setting::new(of, "--truth", p.truth.name(), TruthLevel::default().name()),
         Setting::new(of, "--rays", p.rays_per_patch, plan.rays),
         Setting::new(of, "--randomisations", p.randomisations, plan.randomisations),
         Setting::new(of, "--seed", p.seed, options.seed),
-        Setting::new(of, "--estimator", &p.estimator, Estimator::Auto.name()),
+        match p.truth {
+            TruthLevel::PatchSystem => Setting::new(of, "--estimator", &p.estimator, Estimator::Auto.name()),
+            TruthLevel::Continuous => Setting::given(of, "estimator", PATHS),
+        },
         Setting::given(of, "--kernel", &p.kernel),
         Setting::given(of, "enclosure", p.enclosure),
     ]
@@ -158,6 +165,8 @@ pub fn replay(asked: &Asked) -> String {
     };
     option("--reference", Some(args.reference.display().to_string()));
     option("--before", args.before.as_ref().map(|p| p.display().to_string()));
+    option("--form-factors", args.form_factors.as_ref().map(|p| p.display().to_string()));
+    option("--patch-system", args.patch_system.as_ref().map(|p| p.display().to_string()));
     option("--scene", args.scene.clone());
     let has_scene = args.scene.is_some();
     option("--state", (has_scene && args.state != StateChoice::Final).then(|| state(args.state)));

@@ -191,13 +191,7 @@ fn cut(polygon: &[DVec2], h: &HalfPlane, sign: f64, out: &mut Vec<DVec2>) {
 }
 
 /// Appends the convex pieces of `polygon` outside of a shadow.
-fn subtract(
-    polygon: &[DVec2],
-    shadow: &[HalfPlane],
-    part: &mut Vec<DVec2>,
-    other: &mut Vec<DVec2>,
-    out: &mut Pieces,
-) {
+fn subtract(polygon: &[DVec2], shadow: &[HalfPlane], part: &mut Vec<DVec2>, other: &mut Vec<DVec2>, out: &mut Pieces) {
     // Most shadows miss most pieces: one half-plane with the piece on its far side tells.
     if shadow.iter().any(|h| polygon.iter().all(|p| h.at(*p) <= 0.0)) {
         out.push(polygon);

@@ -25,7 +25,9 @@ impl Params {
 
 /// A setting that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("gather: `{text}` is not a setting; settings are rays=N (at least 1), randomisations=R (8 to 4096) and estimator=auto|rays")]
+#[error(
+    "gather: `{text}` is not a setting; settings are rays=N (at least 1), randomisations=R (8 to 4096) and estimator=auto|rays"
+)]
 pub struct ParamsError {
     /// What was written.
     pub text: String,
