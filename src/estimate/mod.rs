@@ -1,6 +1,7 @@
 //! Form factors by rays: who emits, how many rays, and the hit counts that come of it.
 
 mod aim;
+mod bounds;
 mod checkpoint;
 mod counts;
 mod emitter;
