@@ -344,7 +344,14 @@ pub struct CompareArgs {
     /// Solution file or reference directory.
     pub solution: PathBuf,
     /// Reference directory, or another solution (then no rays: old against new).
-    #[arg(long, value_name = "DIR|SOLUTION")]
+    // With --residual there is none, and nobody looks at this value.
+    #[arg(
+        long,
+        value_name = "DIR|SOLUTION",
+        required = false,
+        required_unless_present = "residual",
+        default_value_if("residual", "true", "none")
+    )]
     pub reference: PathBuf,
     /// The state before the change, for the top-1 % metric.
     #[arg(long, value_name = "DIR|SOLUTION")]
@@ -383,6 +390,37 @@ pub struct CompareArgs {
     /// Write GitHub-flavoured Markdown here.
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
+    /// Without a reference.
+    #[command(flatten)]
+    pub residual: ResidualArgs,
+}
+
+/// Judging a solution by its own residual, without a reference.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Without a reference")]
+pub struct ResidualArgs {
+    /// Judge the solution by its own residual E + rho F B - B, cast by rays: two-sided bounds on its error.
+    #[arg(long, requires = "scene", conflicts_with_all = ["reference", "before", "truth", "report", "markdown"])]
+    pub residual: bool,
+    /// Bounces of the residual: more bring the bounds together; default: until a tenth of any error is left, at
+    /// most 16.
+    #[arg(long, value_name = "N", requires = "residual", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub bounces: Option<u32>,
+    /// Rays per patch of the first bounce, rounded up to R 2^m; a quarter for each further one. Default: some four
+    /// million in all.
+    #[arg(long, value_name = "N", requires = "residual", allow_hyphen_values = true,
+          value_parser = clap::value_parser!(u64).range(1..))]
+    pub rays: Option<u64>,
+    /// Independent randomisations of the whole scene.
+    #[arg(long, value_name = "R", requires = "residual", default_value_t = 16,
+          value_parser = clap::value_parser!(u16).range(8..=4095))]
+    pub randomisations: u16,
+    /// Seed of the random streams.
+    #[arg(long, requires = "residual", default_value_t = 0, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Write the residual of every patch here, W/m^2 per band with its standard error: .csv, .json, .npy or .npz.
+    #[arg(long, value_name = "FILE", requires = "residual")]
+    pub save_residual: Option<PathBuf>,
 }
 
 /// `etalon check`
@@ -403,8 +441,8 @@ pub struct CheckArgs {
     /// Exit code instead of 3 when inconclusive.
     #[arg(long, value_enum, value_name = "pass|fail")]
     pub on_inconclusive: Option<OnInconclusive>,
-    /// Accepted for scripts that share options with `reference`; a check casts no rays.
-    #[arg(long, value_name = "T", hide = true)]
+    /// With --residual: cast fewer rays where all would not fit into this time. Without, a check casts none.
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub max_time: Option<Span>,
 }
 

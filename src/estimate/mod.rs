@@ -3,6 +3,7 @@
 
 mod aim;
 mod blend;
+mod bounds;
 mod checkpoint;
 mod counts;
 mod emitter;

@@ -3,7 +3,7 @@
 use super::compare::MIN_REPLICATES;
 use super::error::MetricsError;
 use super::types::{Judged, Truth};
-use crate::solution::Radiosity;
+use crate::solution::{Radiosity, Replicates};
 
 pub(super) fn inputs(
     solution: &Radiosity,
@@ -12,6 +12,13 @@ pub(super) fn inputs(
     judged: &Judged,
     confidence: f64,
 ) -> Result<(), MetricsError> {
+    alone(solution, judged, confidence)?;
+    truth("the reference", reference, judged)?;
+    before.map_or(Ok(()), |b| truth("the state before the change", b, judged))
+}
+
+/// A solution and its scene, whatever it is held against.
+pub(super) fn alone(solution: &Radiosity, judged: &Judged, confidence: f64) -> Result<(), MetricsError> {
     if !(confidence > 0.0 && confidence < 1.0) {
         return Err(MetricsError::Confidence { confidence });
     }
@@ -22,19 +29,22 @@ pub(super) fn inputs(
     same("the list of surfaces", "patches", judged.surfaces.len(), judged.areas.len())?;
     values("the emission", judged.bands.len(), judged.emission, judged)?;
     one("the solution", solution, judged)?;
-    truth("the reference", reference, judged)?;
-    before.map_or(Ok(()), |b| truth("the state before the change", b, judged))?;
     if judged.areas.iter().any(|a| *a > 0.0) { Ok(()) } else { Err(MetricsError::NothingPresent) }
 }
 
 fn truth(what: &'static str, truth: &Truth, judged: &Judged) -> Result<(), MetricsError> {
     match truth {
         Truth::Given(radiosity) => one(what, radiosity, judged),
-        Truth::Sampled(r) if r.count() < MIN_REPLICATES => {
-            Err(MetricsError::TooFewReplicates { what, got: r.count(), needed: MIN_REPLICATES })
-        }
-        Truth::Sampled(r) => r.replicates.iter().try_for_each(|b| values(what, r.bands, b, judged)),
+        Truth::Sampled(r) => sampled(what, r, judged),
     }
+}
+
+/// Replicates that a spread can be had of.
+pub(super) fn sampled(what: &'static str, r: &Replicates, judged: &Judged) -> Result<(), MetricsError> {
+    if r.count() < MIN_REPLICATES {
+        return Err(MetricsError::TooFewReplicates { what, got: r.count(), needed: MIN_REPLICATES });
+    }
+    r.replicates.iter().try_for_each(|b| values(what, r.bands, b, judged))
 }
 
 fn one(what: &'static str, radiosity: &Radiosity, judged: &Judged) -> Result<(), MetricsError> {

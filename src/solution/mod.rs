@@ -1,9 +1,11 @@
 //! Radiosities, form factors, replicates and provenance: data only.
 
+mod bounds;
 mod form_factors;
 mod provenance;
 mod radiosity;
 
+pub use bounds::FormFactorBounds;
 pub use form_factors::FormFactors;
 pub use provenance::{Check, Provenance, SelfCheck, TruthLevel};
 pub use radiosity::{Radiosity, Replicates};

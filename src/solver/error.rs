@@ -61,4 +61,25 @@ pub enum SolverError {
         /// The band.
         band: usize,
     },
+    /// Light that is less than none.
+    #[error("the emission of receiver {receiver} is {value}; bounds need emissions of 0 or more")]
+    Negative {
+        /// Receiver number.
+        receiver: usize,
+        /// The emission, W/m^2.
+        value: f64,
+    },
+    /// Bounds on form factors that contradict what rows sum to.
+    #[error(
+        "the bounds on the form factors of receiver {receiver} allow row sums from {least:.6} to {most:.6} only, and \
+         none of these can be; a scene that is not closed must not be called closed"
+    )]
+    BoundsMissRowSum {
+        /// Receiver number.
+        receiver: usize,
+        /// Sum of the lower bounds.
+        least: f64,
+        /// Sum of the upper bounds.
+        most: f64,
+    },
 }

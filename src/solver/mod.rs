@@ -3,6 +3,7 @@
 //! Vectors are row-major, n receivers x bands. Solvers take `Params`, call back per iteration and return the
 //! radiosities with an `Info`, or a [`SolverError`] that carries the last residual.
 
+pub mod bounds;
 mod error;
 pub mod gauss_seidel;
 pub mod krylov;

@@ -1,13 +1,13 @@
 //! `etalon compare` and `etalon check`
 
 use super::report::{Stopwatch, write_report};
-use super::{inputs, split, told};
+use super::{check_residual, inputs, split, told};
 use crate::cli::args::{CheckArgs, CompareArgs, Kernel, OnInconclusive, Truth};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
 use crate::io::{SolutionFile, StoredReference, atomic, is_reference, read_solution};
-use crate::metrics::{Decision, Limits, Verdict};
+use crate::metrics::{Limits, Verdict};
 use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, text_summary};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
@@ -23,6 +23,9 @@ const EXPLAINED: usize = 5;
 
 /// `etalon compare`: metrics, no verdict.
 pub fn compare(args: &CompareArgs, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
+    if args.residual.residual {
+        return check_residual::compare(args, kernel, console);
+    }
     let record = run(&Asked { args, limits: None, on_inconclusive: None, kernel }, console)?;
     show(&record, console)?;
     Ok(exit::DONE)
@@ -30,6 +33,9 @@ pub fn compare(args: &CompareArgs, kernel: Kernel, console: &Console) -> Result<
 
 /// `etalon check`: metrics, limits, verdict.
 pub fn check(args: &CheckArgs, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
+    if args.compare.residual.residual {
+        return check_residual::check(args, kernel, console);
+    }
     let limits = limits(args)?;
     args.junit.as_deref().map(inputs::check_writable).transpose()?;
     let asked = Asked { args: &args.compare, limits: Some(limits), on_inconclusive: args.on_inconclusive, kernel };
@@ -38,7 +44,7 @@ pub fn check(args: &CheckArgs, kernel: Kernel, console: &Console) -> Result<u8, 
         write_only(path, &JUnit, &record)?;
     }
     show(&record, console)?;
-    let decision = record.decision.as_ref().map(|d| exit_code(d, args.on_inconclusive));
+    let decision = record.decision.as_ref().map(|d| exit_code(d.verdict, args.on_inconclusive));
     Ok(decision.unwrap_or(exit::DONE))
 }
 
@@ -55,8 +61,9 @@ fn limits(args: &CheckArgs) -> Result<Limits, Failure> {
     Ok(limits)
 }
 
-fn exit_code(decision: &Decision, on_inconclusive: Option<OnInconclusive>) -> u8 {
-    match (decision.verdict, on_inconclusive) {
+/// What a verdict ends the program with.
+pub fn exit_code(verdict: Verdict, on_inconclusive: Option<OnInconclusive>) -> u8 {
+    match (verdict, on_inconclusive) {
         (Verdict::Pass, _) | (Verdict::Inconclusive, Some(OnInconclusive::Pass)) => exit::DONE,
         (Verdict::Fail, _) | (Verdict::Inconclusive, Some(OnInconclusive::Fail)) => exit::FAIL,
         (Verdict::Inconclusive, None) => exit::INCONCLUSIVE,
@@ -77,13 +84,14 @@ fn write_only(path: &Path, exporter: &dyn Exporter, record: &Record) -> Result<(
 }
 
 /// Either a stored reference or a solution, as a path names it.
-enum Input {
+pub enum Input {
     Reference(Box<StoredReference>),
     Solution(SolutionFile),
 }
 
 impl Input {
-    fn read(path: &Path) -> Result<Self, Failure> {
+    /// Reads what a path names.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
         if is_reference(path) {
             Ok(Self::Reference(Box::new(StoredReference::read(path)?)))
         } else {
@@ -255,7 +263,8 @@ fn guess_photometry(s: &SolutionFile) -> Photometry {
     }
 }
 
-fn fit(path: &Path, input: Input, to: &Receivers, per_element: bool, stage: &Stage) -> Result<Radiosity, Failure> {
+/// A solution as it fits the receivers of a stage.
+pub fn fit(path: &Path, input: Input, to: &Receivers, per_element: bool, stage: &Stage) -> Result<Radiosity, Failure> {
     let file = match input {
         Input::Solution(file) => file,
         Input::Reference(r) => {

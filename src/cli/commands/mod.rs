@@ -1,6 +1,7 @@
 //! One file per command: plan, run, print.
 
 mod check;
+mod check_residual;
 mod demo;
 mod form_factors;
 mod form_factors_check;
