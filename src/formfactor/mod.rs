@@ -1,6 +1,7 @@
 //! Form factors in closed form where nothing stands between, and what form factors have to obey: reciprocity, tested
 //! in units of its own errors.
 
+pub mod catalogue;
 mod contour;
 mod defect;
 mod edge;

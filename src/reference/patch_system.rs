@@ -4,6 +4,7 @@ use super::ReferenceError;
 use super::self_check::{self, Evidence};
 use super::transport::LeaveOneOut;
 use crate::estimate::{Casting, Checkpoint, Entry, HitCounts, NoCheckpoint, Plan};
+use crate::estimate::{DirectLight, direct_light, lit_elements, lit_patches};
 use crate::estimate::{cast_on, element_emitters, patch_emitters};
 use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
@@ -14,6 +15,9 @@ use std::cell::RefCell;
 
 /// Relative residual to which patch systems are solved.
 const RESIDUAL: f64 = 1e-12;
+
+/// Branches of the judge's stream that shadow rays are drawn from: "light" of patches, of elements.
+const LIGHT: [u64; 2] = [0x6c69_6768_7401, 0x6c69_6768_7402];
 
 /// What a reference may spend.
 #[derive(Debug, Clone, Copy, Default)]
@@ -77,8 +81,19 @@ impl Inputs {
         Self { bands: stage.band_count(), emission: stage.emissions(), reflectance: stage.reflectances() }
     }
 
-    fn system(&self) -> System<'_> {
-        System { emission: &self.emission, reflectance: &self.reflectance, bands: self.bands }
+    /// What leaves the patches before the first bounce between them: emission, and what they reflect of point lights.
+    fn source(&self, irradiance: Option<&Vec<f64>>) -> Vec<f64> {
+        let reflected = |k: usize| irradiance.map_or(0.0, |h| self.reflectance[k] * h[k]);
+        self.emission.iter().enumerate().map(|(k, e)| e + reflected(k)).collect()
+    }
+
+    /// The sources with each randomisation left out, side by side as [`HitCounts::repeated`] lays them out.
+    fn sources_left_out(&self, counts: &HitCounts, direct: Option<&DirectLight>) -> Vec<f64> {
+        let Some(direct) = direct else { return counts.repeated(&self.emission, self.bands) };
+        let each: Vec<Vec<f64>> = direct.left_out.iter().map(|h| self.source(Some(h))).collect();
+        let width = each.len() * self.bands;
+        let of = |k: usize| each[k % width / self.bands][k / width * self.bands + k % self.bands];
+        (0..self.emission.len() * each.len()).map(of).collect()
     }
 }
 
@@ -115,7 +130,14 @@ pub fn compute_on(
     // The radiosities of the last wave are kept: where the plan stops, they are the answer.
     let solved: RefCell<Option<Result<Solved, ReferenceError>>> = RefCell::new(None);
     let error = |counts: &HitCounts| {
-        let result = solve(stage, &inputs, counts);
+        let direct = direct_light(
+            tracer,
+            &lit_patches(stage, &emitters),
+            stream.child(LIGHT[0]),
+            counts.rays,
+            counts.randomisations,
+        );
+        let result = solve(stage, &inputs, counts, direct.as_ref());
         let relative = result.as_ref().map_or(f64::NAN, |s| relative_noise(stage, &s.replicates));
         *solved.borrow_mut() = Some(result);
         relative
@@ -182,7 +204,12 @@ struct Solved {
 ///
 /// The solution depends on F in a curved way, so noise in F shifts its mean by a term of order 1/R. The
 /// jackknife pseudo-values `R B - (R - 1) B_without_r` cancel that term and are the replicates.
-fn solve(stage: &Stage, inputs: &Inputs, counts: &HitCounts) -> Result<Solved, ReferenceError> {
+fn solve(
+    stage: &Stage,
+    inputs: &Inputs,
+    counts: &HitCounts,
+    direct: Option<&DirectLight>,
+) -> Result<Solved, ReferenceError> {
     let areas = stage.areas();
     let r = counts.randomisations;
     let params = krylov::Params {
@@ -190,8 +217,10 @@ fn solve(stage: &Stage, inputs: &Inputs, counts: &HitCounts) -> Result<Solved, R
         norm: crate::solver::Norm { weights: Some(&areas) },
         ..krylov::Params::default()
     };
-    let (mean, info) = krylov::solve(&inputs.system(), &counts.form_factors(), None, &params, |_, _| {})?;
-    let emission = counts.repeated(&inputs.emission, inputs.bands);
+    let source = inputs.source(direct.map(|d| &d.mean));
+    let system = System { emission: &source, reflectance: &inputs.reflectance, bands: inputs.bands };
+    let (mean, info) = krylov::solve(&system, &counts.form_factors(), None, &params, |_, _| {})?;
+    let emission = inputs.sources_left_out(counts, direct);
     let reflectance = counts.repeated(&inputs.reflectance, inputs.bands);
     let system = System { emission: &emission, reflectance: &reflectance, bands: inputs.bands * usize::from(r) };
     let guess = counts.repeated(&mean, inputs.bands);
@@ -256,10 +285,15 @@ fn gather_elements(
         }
     }
     let gathered = elements.counts.apply_each(&sources, bands);
+    let (rays, r) = (elements.counts.rays, elements.counts.randomisations);
+    let direct = direct_light(tracer, &lit_elements(stage, &emitters), stream.child(LIGHT[1]), rays, r);
+    let direct = direct.map(|d| d.replicates());
+    let straight = |r: usize, k: usize| direct.as_ref().map_or(0.0, |d| d[r][k]);
     let value = |r: usize, e: usize, c: usize| {
         let i = stage.elements[e].patch as usize * bands + c;
         let present = emitters[e].is_some();
-        if present { inputs.emission[i] + inputs.reflectance[i] * gathered[e * width + r * bands + c] } else { 0.0 }
+        let arriving = gathered[e * width + r * bands + c] + straight(r, e * bands + c);
+        if present { inputs.emission[i] + inputs.reflectance[i] * arriving } else { 0.0 }
     };
     let replicate = |r: usize| {
         (0..emitters.len()).flat_map(|e| (0..bands).map(move |c| (e, c))).map(|(e, c)| value(r, e, c)).collect()

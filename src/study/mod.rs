@@ -3,14 +3,17 @@
 mod contributions;
 mod judge;
 mod kept;
+mod receivers;
 mod record;
 mod reuse;
 mod run;
 mod session;
+pub mod validate;
 
 pub use contributions::{Contributions, Rows, Source, contributions};
 pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, break_down, judge};
 pub use kept::KeptWork;
+pub use receivers::at_receivers;
 pub use record::{Part, Record, Setting};
 pub use reuse::falls_short;
 pub use run::{SolveOutcome, SolveRequest, reference, reference_on, solve};

@@ -5,12 +5,14 @@ mod demo;
 mod form_factors;
 mod inputs;
 mod machine;
+mod receivers;
 mod reference;
 mod render;
 mod report;
 mod scene;
 mod solve;
 mod told;
+mod validate;
 
 use super::args::{Cli, Command};
 use super::console::Console;
@@ -29,6 +31,8 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Render(args) => render::run(args, kernel, console),
         Command::Report { directory } => report::run(directory, cli.global.kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),
+        Command::Receivers(args) => receivers::run(args, kernel, console),
+        Command::Validate(command) => validate::run(command, kernel, console),
         Command::Setup(command) => machine::setup(command, console),
         Command::Doctor => machine::doctor(console),
     }
