@@ -471,7 +471,7 @@ fn closed_built_in_scenes_are_closed() {
             check_consistent(&stage);
         }
     }
-    assert_eq!(builtin_names().len(), 10);
+    assert_eq!(builtin_names().len(), 18);
     assert!((1000..=1500).contains(&builtin("furnished-room").unwrap().at(0).unwrap().patch_count()));
 }
 

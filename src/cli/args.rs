@@ -82,6 +82,11 @@ pub enum Command {
         #[arg(short, long, value_name = "DIR", default_value = "reports/demo")]
         output: PathBuf,
     },
+    /// Irradiance at the receivers of a scene, with standard errors.
+    Receivers(ReceiversArgs),
+    /// Published test suites: what this program is validated against.
+    #[command(subcommand)]
+    Validate(ValidateCommand),
     /// Get what is missing on this machine.
     #[command(subcommand)]
     Setup(SetupCommand),
@@ -336,6 +341,43 @@ pub struct SolveArgs {
     /// Level of the values.
     #[arg(long, value_enum, default_value_t = PerLevel::Patch)]
     pub per: PerLevel,
+}
+
+/// `etalon receivers`
+#[derive(Debug, Args)]
+pub struct ReceiversArgs {
+    /// Scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Rays of each receiver, and of each patch where surfaces reflect.
+    #[command(flatten)]
+    pub suite: SuiteArgs,
+    /// .csv: name, position, normal, irradiance and standard error per band.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
+/// `etalon validate ...`
+#[derive(Debug, Subcommand)]
+pub enum ValidateCommand {
+    /// CIE 171:2006, cases 5.2, 5.3, 5.4, 5.6, 5.7 and 5.8, as built-in scenes.
+    Cie171(SuiteArgs),
+    /// 114 exact form factors: polygons, disks, spheres, obstructed pairs.
+    ClosedForms(SuiteArgs),
+}
+
+/// How much a suite may cast.
+#[derive(Debug, Clone, Args)]
+pub struct SuiteArgs {
+    /// Rays of each value that takes rays, over all randomisations; rounded up to R 2^m.
+    #[arg(long, default_value_t = 262_144, allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
+    pub rays: u64,
+    /// Independent randomisations.
+    #[arg(long, value_name = "R", default_value_t = 16, value_parser = clap::value_parser!(u16).range(8..=4095))]
+    pub randomisations: u16,
+    /// Seed of the random streams.
+    #[arg(long, default_value_t = 0, allow_hyphen_values = true)]
+    pub seed: u64,
 }
 
 /// What is compared with what.

@@ -11,6 +11,7 @@ use crate::report::ReportError;
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use crate::study::JudgeError;
+use crate::study::validate::CieError;
 use serde_json::{Value, json};
 
 /// Done; every limit met.
@@ -89,6 +90,17 @@ macro_rules! bad_input {
 }
 
 bad_input!(KernelError, SolverError, ReferenceError, MetricsError, MethodError, SceneError, JudgeError, ReportError);
+
+impl From<CieError> for Failure {
+    fn from(e: CieError) -> Self {
+        match e {
+            CieError::File(e) => e.into(),
+            CieError::Scene(e) => e.into(),
+            CieError::Kernel(e) => e.into(),
+            CieError::Reference(e) => e.into(),
+        }
+    }
+}
 
 impl From<SceneFileError> for Failure {
     fn from(e: SceneFileError) -> Self {

@@ -22,6 +22,10 @@ pub(super) fn findings(patient: &Patient) -> Vec<Finding> {
     let luminance = |i: usize| stage.photometry.luminance(stage.emission(i));
     let emitters = patch_emitters(stage);
     let lamps: Vec<usize> = (0..emitters.len()).filter(|i| emitters[*i].is_some() && luminance(*i) > 0.0).collect();
+    if lamps.is_empty() && stage.lights.iter().any(|l| stage.photometry.luminance(&l.intensity) > 0.0) {
+        // Point lights are not found by rays: they neither need many nor leave the scene dark.
+        return Vec::new();
+    }
     if lamps.is_empty() {
         return vec![dark(stage)];
     }

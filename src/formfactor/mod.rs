@@ -1,6 +1,7 @@
 //! Form factors in closed form where nothing stands between, and what form factors have to obey: reciprocity and
 //! closure, tested in units of their own errors and enforced by weighted least squares.
 
+pub mod catalogue;
 mod closure;
 mod contour;
 mod defect;

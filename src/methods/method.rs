@@ -31,6 +31,12 @@ pub enum MethodError {
     /// Parameters of the hemi-cube, or its failure.
     #[error(transparent)]
     Hemicube(#[from] hemicube::HemicubeError),
+    /// The scene has lights that the methods do not know.
+    #[error(
+        "the scene has {0} point lights, which the methods of this version do not take; `etalon reference` does, or \
+         use an emitting surface"
+    )]
+    PointLights(usize),
     /// The patch system could not be solved.
     #[error(transparent)]
     Solver(#[from] crate::solver::SolverError),

@@ -7,6 +7,7 @@ use super::transport::LeaveOneOut;
 use crate::estimate::{
     Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, PairTally, Plan,
 };
+use crate::estimate::{DirectLight, direct_light, lit_elements, lit_patches};
 use crate::estimate::{cast_on, element_emitters, patch_emitters, settle};
 use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
@@ -21,6 +22,8 @@ const RESIDUAL: f64 = 1e-12;
 
 /// Key of the stream that numerical errors are drawn from.
 const NUMERICAL_NOISE: u64 = 0x6e75_6d65;
+/// Branches of the judge's stream that shadow rays are drawn from: "light" of patches, of elements.
+const LIGHT: [u64; 2] = [0x6c69_6768_7401, 0x6c69_6768_7402];
 
 /// What a reference may spend.
 #[derive(Debug, Clone, Copy, Default)]
@@ -86,8 +89,19 @@ impl Inputs {
         Self { bands: stage.band_count(), emission: stage.emissions(), reflectance: stage.reflectances() }
     }
 
-    fn system(&self) -> System<'_> {
-        System { emission: &self.emission, reflectance: &self.reflectance, bands: self.bands }
+    /// What leaves the patches before the first bounce between them: emission, and what they reflect of point lights.
+    fn source(&self, irradiance: Option<&Vec<f64>>) -> Vec<f64> {
+        let reflected = |k: usize| irradiance.map_or(0.0, |h| self.reflectance[k] * h[k]);
+        self.emission.iter().enumerate().map(|(k, e)| e + reflected(k)).collect()
+    }
+
+    /// The sources with each randomisation left out, side by side as [`HitCounts::repeated`] lays them out.
+    fn sources_left_out(&self, counts: &HitCounts, direct: Option<&DirectLight>) -> Vec<f64> {
+        let Some(direct) = direct else { return counts.repeated(&self.emission, self.bands) };
+        let each: Vec<Vec<f64>> = direct.left_out.iter().map(|h| self.source(Some(h))).collect();
+        let width = each.len() * self.bands;
+        let of = |k: usize| each[k % width / self.bands][k / width * self.bands + k % self.bands];
+        (0..self.emission.len() * each.len()).map(of).collect()
     }
 }
 
@@ -127,7 +141,14 @@ pub fn compute_on(
     // The radiosities of the last wave are kept: where the plan stops, they are the answer.
     let last: RefCell<Option<Result<Solved, ReferenceError>>> = RefCell::new(None);
     let error = |counts: &HitCounts| {
-        let result = solve(stage, &inputs, &blend(settled.as_ref(), counts), stream);
+        let direct = direct_light(
+            tracer,
+            &lit_patches(stage, &emitters),
+            stream.child(LIGHT[0]),
+            counts.rays,
+            counts.randomisations,
+        );
+        let result = solve(stage, &inputs, &blend(settled.as_ref(), counts), direct.as_ref(), stream);
         let relative = result.as_ref().map_or(f64::NAN, |s| relative_noise(stage, &s.replicates));
         *last.borrow_mut() = Some(result);
         relative
@@ -205,7 +226,13 @@ struct Solved {
 /// jackknife pseudo-values `R B - (R - 1) B_without_r` cancel that term and are the replicates.
 ///
 /// Settled pairs are the same in every matrix; what their numerical errors do is added as noise of that size.
-fn solve(stage: &Stage, inputs: &Inputs, blend: &Blend, stream: Stream) -> Result<Solved, ReferenceError> {
+fn solve(
+    stage: &Stage,
+    inputs: &Inputs,
+    blend: &Blend,
+    direct: Option<&DirectLight>,
+    stream: Stream,
+) -> Result<Solved, ReferenceError> {
     let (areas, counts) = (stage.areas(), blend.counts());
     let r = counts.randomisations;
     let params = krylov::Params {
@@ -213,8 +240,10 @@ fn solve(stage: &Stage, inputs: &Inputs, blend: &Blend, stream: Stream) -> Resul
         norm: crate::solver::Norm { weights: Some(&areas) },
         ..krylov::Params::default()
     };
-    let (mean, info) = krylov::solve(&inputs.system(), &blend.form_factors(), None, &params, |_, _| {})?;
-    let emission = counts.repeated(&inputs.emission, inputs.bands);
+    let source = inputs.source(direct.map(|d| &d.mean));
+    let system = System { emission: &source, reflectance: &inputs.reflectance, bands: inputs.bands };
+    let (mean, info) = krylov::solve(&system, &blend.form_factors(), None, &params, |_, _| {})?;
+    let emission = inputs.sources_left_out(counts, direct);
     let reflectance = counts.repeated(&inputs.reflectance, inputs.bands);
     let system = System { emission: &emission, reflectance: &reflectance, bands: inputs.bands * usize::from(r) };
     let guess = counts.repeated(&mean, inputs.bands);
@@ -298,10 +327,15 @@ fn gather_elements(
         }
     }
     let gathered = elements.counts.apply_each(&sources, bands);
+    let (rays, r) = (elements.counts.rays, elements.counts.randomisations);
+    let direct = direct_light(tracer, &lit_elements(stage, &emitters), stream.child(LIGHT[1]), rays, r);
+    let direct = direct.map(|d| d.replicates());
+    let straight = |r: usize, k: usize| direct.as_ref().map_or(0.0, |d| d[r][k]);
     let value = |r: usize, e: usize, c: usize| {
         let i = stage.elements[e].patch as usize * bands + c;
         let present = emitters[e].is_some();
-        if present { inputs.emission[i] + inputs.reflectance[i] * gathered[e * width + r * bands + c] } else { 0.0 }
+        let arriving = gathered[e * width + r * bands + c] + straight(r, e * bands + c);
+        if present { inputs.emission[i] + inputs.reflectance[i] * arriving } else { 0.0 }
     };
     let replicate = |r: usize| {
         (0..emitters.len()).flat_map(|e| (0..bands).map(move |c| (e, c))).map(|(e, c)| value(r, e, c)).collect()

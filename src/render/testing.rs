@@ -63,6 +63,8 @@ impl Builder {
             patches: Vec::new(),
             elements: Vec::new(),
             cameras: Vec::new(),
+            lights: Vec::new(),
+            receivers: Vec::new(),
         })
     }
 

@@ -36,6 +36,8 @@ impl Scene {
             materials: standing.materials,
             surfaces: names.list,
             cameras: self.cameras.clone(),
+            lights: self.lights.clone(),
+            receivers: self.receivers.clone(),
             facets,
             patches,
             elements,

@@ -1,6 +1,6 @@
 //! The identity of a scene at a state.
 
-use super::{Grid, Stage};
+use super::{Distribution, Grid, Stage};
 use sha2::{Digest, Sha256};
 
 /// Version of what is hashed; changes when the meaning of a stage does.
@@ -8,7 +8,7 @@ const DOMAIN: &[u8] = b"etalon-stage/1";
 
 impl Stage {
     /// SHA-256 in hexadecimal over geometry, materials, discretisation, photometry and state: all that the
-    /// radiosities depend on. Names, cameras and comments do not count.
+    /// radiosities depend on. Names, cameras, receivers and comments do not count.
     pub fn hash(&self) -> String {
         let mut h = Sha256::new();
         h.update(DOMAIN);
@@ -37,6 +37,16 @@ impl Stage {
         for p in &self.patches {
             integer(&mut h, p.material as usize);
             numbers(&mut h, &[p.area]);
+        }
+        // After everything else: scenes without lights keep the hash they have always had.
+        for light in &self.lights {
+            h.update(b"light");
+            numbers(&mut h, &light.position.to_array());
+            numbers(&mut h, &light.intensity);
+            match light.distribution {
+                Distribution::Isotropic => h.update([1]),
+                Distribution::Lambert(axis) => numbers(&mut h, &axis.to_array()),
+            }
         }
         h.finalize().iter().map(|b| format!("{b:02x}")).collect()
     }

@@ -1,5 +1,6 @@
 //! The scene as written: every object, every state.
 
+use super::{PointLight, Receiver};
 use crate::math::DVec3;
 use crate::view::{Camera, Photometry};
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,10 @@ pub struct Scene {
     pub edits: Vec<Edit>,
     /// Cameras in file order.
     pub cameras: Vec<Camera>,
+    /// Point lights in file order; edits do not touch them.
+    pub lights: Vec<PointLight>,
+    /// Receivers in file order.
+    pub receivers: Vec<Receiver>,
     /// What was mended or guessed while reading (a split quadrilateral, a default taken), for the user.
     pub notices: Vec<String>,
 }

@@ -19,6 +19,8 @@ impl Stage {
             patches: polygons.iter().zip(0..).map(|(p, i)| plain_patch(p, i)).collect(),
             elements: Vec::new(),
             cameras: Vec::new(),
+            lights: Vec::new(),
+            receivers: Vec::new(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The scene at one state: what kernels trace, and the numbered patches.
 
-use super::{Grid, Material, Region};
+use super::{Grid, Material, PointLight, Receiver, Region};
 use crate::math::DVec3;
 use crate::view::{Camera, Photometry};
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,12 @@ pub struct Stage {
     pub elements: Vec<Element>,
     /// Cameras in file order; empty where the file has none.
     pub cameras: Vec<Camera>,
+    /// Point lights in file order; none in what earlier versions stored.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lights: Vec<PointLight>,
+    /// Receivers in file order; none in what earlier versions stored.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub receivers: Vec<Receiver>,
 }
 
 /// Names of a surface, or of a group of its mesh.

@@ -76,9 +76,13 @@ pub struct Rows<'a> {
     pub confidence: f64,
 }
 
-/// Explains each receiver of `rows` by casting its rays again, as the reference did.
+/// Explains each receiver of `rows` by casting its rays again, as the reference did. Nothing in scenes with point lights:
+/// their light comes by no row of form factors, and a sum without it would mislead.
 pub fn contributions(session: &Session, reference: &StoredReference, rows: &Rows) -> Vec<Contributions> {
     let stage = session.stage();
+    if !stage.lights.is_empty() {
+        return Vec::new();
+    }
     let by_element = rows.elements && reference.elements.is_some();
     let mut emitters = if by_element { element_emitters(stage) } else { patch_emitters(stage) };
     emitters.iter_mut().enumerate().filter(|(i, _)| !rows.receivers.contains(i)).for_each(|(_, e)| *e = None);

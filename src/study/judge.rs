@@ -100,6 +100,8 @@ pub fn anonymous_stage(n: usize, photometry: Photometry) -> Stage {
         patches: (0..n).map(patch).collect(),
         elements: Vec::new(),
         cameras: Vec::new(),
+        lights: Vec::new(),
+        receivers: Vec::new(),
         photometry,
     }
 }

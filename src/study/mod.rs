@@ -3,16 +3,19 @@
 mod contributions;
 mod judge;
 mod kept;
+mod receivers;
 mod record;
 mod residual;
 mod reuse;
 mod run;
 mod session;
 mod split;
+pub mod validate;
 
 pub use contributions::{Contributions, Rows, Source, contributions};
 pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, break_down, judge};
 pub use kept::KeptWork;
+pub use receivers::at_receivers;
 pub use record::{Part, Record, Setting};
 pub use residual::{ResidualRequest, ResidualRun, residual};
 pub use reuse::falls_short;

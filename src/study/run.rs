@@ -118,6 +118,9 @@ pub struct SolveOutcome {
 /// Runs a candidate.
 pub fn solve(session: &Session, request: &SolveRequest, progress: &dyn Progress) -> Result<SolveOutcome, MethodError> {
     let stage = session.stage();
+    if !stage.lights.is_empty() {
+        return Err(MethodError::PointLights(stage.lights.len()));
+    }
     let rows = stage.patches.iter().filter(|p| p.is_present()).count() as u64;
     let (radiosity, info, form_factors) = match (request.method, request.form_factors) {
         (Method::Gather(_), Some(f)) => with_matrix(f, gather::solve_with(stage, f)?),

@@ -26,6 +26,8 @@ impl Build {
             patches: vec![],
             elements: vec![],
             cameras: vec![],
+            lights: vec![],
+            receivers: vec![],
         })
     }
 

@@ -52,6 +52,8 @@ impl Polygons {
             absent: Vec::new(),
             edits: Vec::new(),
             cameras: Vec::new(),
+            lights: Vec::new(),
+            receivers: Vec::new(),
             notices: Vec::new(),
         };
         Self { scene }

@@ -9,6 +9,7 @@ mod form_factors_repair;
 mod form_factors_told;
 mod inputs;
 mod machine;
+mod receivers;
 mod reference;
 mod render;
 mod report;
@@ -16,6 +17,7 @@ mod scene;
 mod solve;
 mod split;
 mod told;
+mod validate;
 
 use super::args::{Cli, Command, FormFactorsCommand, MatrixCommand};
 use super::console::Console;
@@ -40,6 +42,8 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Render(args) => render::run(args, kernel, console),
         Command::Report { directory } => report::run(directory, cli.global.kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),
+        Command::Receivers(args) => receivers::run(args, kernel, console),
+        Command::Validate(command) => validate::run(command, kernel, console),
         Command::Setup(command) => machine::setup(command, console),
         Command::Doctor => machine::doctor(console),
     }

@@ -27,7 +27,7 @@ fn check(args: &SceneArgs, strict: bool, console: &Console) -> Result<u8, Failur
     let present = stage.patches.iter().filter(|p| p.is_present()).count();
     let area: f64 = stage.areas().iter().sum();
     let text = format!(
-        "{}: {}. {} surfaces, {} patches ({present} present in state {}), {} elements, {area:.6} m^2, bands {}{}",
+        "{}: {}. {} surfaces, {} patches ({present} present in state {}), {} elements, {area:.6} m^2, bands {}{}{}",
         scene.name,
         if grave == 0 { "sound" } else { "readable, but see the findings" },
         stage.surfaces.len(),
@@ -35,15 +35,28 @@ fn check(args: &SceneArgs, strict: bool, console: &Console) -> Result<u8, Failur
         stage.state,
         stage.elements.len(),
         stage.photometry.bands.join(", "),
+        besides(&stage),
         told(&findings),
     );
     let json = json!({
         "scene": scene.name, "scene_hash": stage.hash(), "state": stage.state, "states": scene.edits.len() + 1,
         "surfaces": stage.surfaces.len(), "patches": stage.patch_count(), "patches_present": present,
-        "elements": stage.elements.len(), "area": area, "bands": stage.photometry.bands, "findings": findings,
+        "elements": stage.elements.len(), "area": area, "bands": stage.photometry.bands,
+        "lights": stage.lights.iter().map(|l| &l.name).collect::<Vec<_>>(),
+        "receivers": stage.receivers.iter().map(|r| &r.name).collect::<Vec<_>>(), "findings": findings,
     });
     console.result(&text, &json);
     Ok(if strict && grave > 0 { exit::FAIL } else { exit::DONE })
+}
+
+/// Lights and receivers, where there are any.
+fn besides(stage: &Stage) -> String {
+    let counted = |n: usize, what: &str| match n {
+        0 => String::new(),
+        1 => format!(", 1 {what}"),
+        _ => format!(", {n} {what}s"),
+    };
+    counted(stage.lights.len(), "point light") + &counted(stage.receivers.len(), "receiver")
 }
 
 /// The findings as paragraphs, those of one kind together with the mend told once.

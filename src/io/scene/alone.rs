@@ -51,6 +51,8 @@ pub(super) fn read_mesh(path: &Path, options: &SceneOptions) -> Checked<Scene> {
         absent: Vec::new(),
         edits: Vec::new(),
         cameras: Vec::new(),
+        lights: Vec::new(),
+        receivers: Vec::new(),
         notices,
     };
     survey(&mut scene).map_err(|e| refusal(path, &e))?;

@@ -27,6 +27,14 @@ const SCENES: &[(&str, &str)] = &[
     scene!("l-room"),
     scene!("furnished-room"),
     scene!("dynamic-cube"),
+    scene!("cie171-5-2"),
+    scene!("cie171-5-3"),
+    scene!("cie171-5-4"),
+    scene!("cie171-5-6"),
+    scene!("cie171-5-6-small"),
+    scene!("cie171-5-6-large"),
+    scene!("cie171-5-7"),
+    scene!("cie171-5-8"),
 ];
 
 /// Names of the built-in scenes.

@@ -7,6 +7,7 @@ mod check;
 mod edits;
 mod error;
 mod folder;
+mod lighting;
 mod mesh;
 mod photometry;
 mod polygon;

@@ -251,7 +251,7 @@ pub(super) fn reserved(check: Check, what: &str, span: Option<Range<usize>>) -> 
             Refusal::Reserved,
             span,
             format!("{what} is reserved: a later version brings it"),
-            "leave it out for now; surfaces are diffuse and lit by emitting surfaces",
+            "leave it out for now; surfaces are diffuse and lit by emitting surfaces and point lights",
         ),
     }
 }

@@ -29,8 +29,10 @@ pub(super) struct File {
     pub camera: Vec<Camera>,
     #[serde(default)]
     pub edit: Vec<Spanned<Edit>>,
-    pub receiver: Option<Spanned<IgnoredAny>>,
-    pub light: Option<Spanned<IgnoredAny>>,
+    #[serde(default)]
+    pub receiver: Vec<Receiver>,
+    #[serde(default)]
+    pub light: Vec<Light>,
     pub texture: Option<Spanned<IgnoredAny>>,
 }
 
@@ -90,6 +92,26 @@ pub(super) struct Camera {
     pub up: Option<Spanned<Vec<f64>>>,
     pub fov: Option<Spanned<f64>>,
     pub size: Option<Spanned<Vec<i64>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Light {
+    pub name: Option<Spanned<String>>,
+    #[serde(rename = "type")]
+    pub kind: Spanned<String>,
+    pub position: Option<Spanned<Vec<f64>>>,
+    pub intensity: Option<Spanned<Numbers>>,
+    pub distribution: Option<Spanned<String>>,
+    pub direction: Option<Spanned<Vec<f64>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Receiver {
+    pub name: Spanned<String>,
+    pub position: Spanned<Vec<f64>>,
+    pub normal: Spanned<Vec<f64>>,
 }
 
 #[derive(Deserialize)]

@@ -6,6 +6,7 @@ use super::check::{Check, Checked, known_names, nearest};
 use super::edits::{self, Read};
 use super::error::{Refusal, SceneFileError};
 use super::folder::{Folder, text_of};
+use super::lighting::{lights, receivers};
 use super::mesh::Gathered;
 use super::photometry::{materials, photometry, reserved};
 use super::raw;
@@ -43,13 +44,7 @@ fn parse(source: &Source, stem: &str, folder: &Folder, options: &SceneOptions) -
     let check = Check { source };
     check_format(check)?;
     let file: raw::File = toml::from_str(&source.text).map_err(|e| syntax(source, &e))?;
-    for (what, span) in [
-        ("[[receiver]]", file.receiver.as_ref().map(Spanned::span)),
-        ("[[light]]", file.light.as_ref().map(Spanned::span)),
-        ("texture", file.texture.as_ref().map(Spanned::span)),
-    ] {
-        reserved(check, what, span)?;
-    }
+    reserved(check, "texture", file.texture.as_ref().map(Spanned::span))?;
     if file.surface.is_empty() {
         let whole = 0..source.text.len().min(1);
         return check.refuse(Refusal::Empty, whole, "the scene has no surface", "add a [[surface]]");
@@ -73,6 +68,8 @@ fn gather(check: Check, file: &raw::File, stem: &str, folder: &Folder, max_edge:
         absent: absent(check, file)?,
         edits,
         cameras: cameras(check, &file.camera)?,
+        lights: lights(check, &file.light, &photometry.bands)?,
+        receivers: receivers(check, &file.receiver)?,
         materials: materials.list,
         photometry,
         surfaces,

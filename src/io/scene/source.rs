@@ -12,8 +12,14 @@ pub(super) struct Source {
 }
 
 /// Headers of the blocks that have a name, with the word for them.
-const BLOCKS: [(&str, &str); 4] =
-    [("[[surface]]", "surface"), ("[[material]]", "material"), ("[[camera]]", "camera"), ("[[edit]]", "edit")];
+const BLOCKS: [(&str, &str); 6] = [
+    ("[[surface]]", "surface"),
+    ("[[material]]", "material"),
+    ("[[camera]]", "camera"),
+    ("[[light]]", "light"),
+    ("[[receiver]]", "receiver"),
+    ("[[edit]]", "edit"),
+];
 
 impl Source {
     pub(super) fn new(path: &Path, text: String) -> Self {
