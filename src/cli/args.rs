@@ -122,7 +122,7 @@ pub enum SetupCommand {
 /// Which scene, in which state.
 #[derive(Debug, Clone, Args)]
 pub struct SceneArgs {
-    /// Scene file, mesh (.obj, .ply, .gltf, .glb), or builtin:NAME.
+    /// Scene file, mesh (.obj, .ply, .gltf, .glb), View3D input (.vs3), or builtin:NAME.
     pub scene: String,
     /// State of a scene with edits: initial, the number of edits applied, or final.
     #[arg(long, default_value = "final", value_name = "initial|K|final")]
