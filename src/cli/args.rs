@@ -1,6 +1,7 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
 use super::values::{Fraction, PerLevel, Pixels, Quantity, Span, StateChoice};
+use crate::io::MatrixLayout;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -182,9 +183,13 @@ pub struct FormFactorsArgs {
     /// Rays.
     #[command(flatten)]
     pub rays: RayArgs,
-    /// .npz (SciPy CSR), .csv or .mtx.
+    /// .npz (SciPy CSR), .csv, .mtx, .vf (View3D) or .idf (EnergyPlus).
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
+    /// Format whatever the ending: npz, csv, mtx, view3d, energyplus; with details as csv:by=surface, csv:names,
+    /// view3d:by=patch, energyplus:zone=NAME.
+    #[arg(long, value_name = "FORMAT")]
+    pub format: Option<MatrixLayout>,
     /// Standard errors likewise.
     #[arg(long, value_name = "FILE")]
     pub std_err: Option<PathBuf>,

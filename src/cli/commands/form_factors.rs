@@ -5,7 +5,7 @@ use crate::cli::args::FormFactorsArgs;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::estimate::{Casting, cast, patch_emitters};
-use crate::io::{MatrixFormat, write_form_factors};
+use crate::io::{MatrixLayout, write_matrix};
 use crate::raycast::KernelKind;
 use crate::reference::{Progress, test_reciprocity};
 use crate::sampling::{Role, Stream};
@@ -16,8 +16,8 @@ use std::time::Instant;
 
 pub fn run(args: &FormFactorsArgs, kernel: KernelKind, console: &Console) -> Result<u8, Failure> {
     let begin = Instant::now();
-    let format = MatrixFormat::of(&args.output)?;
-    let error_format = args.std_err.as_deref().map(MatrixFormat::of).transpose()?;
+    let layout = MatrixLayout::of(&args.output, args.format.as_ref())?;
+    let error_layout = args.std_err.as_deref().map(|path| layout.of_errors(path)).transpose()?;
     inputs::check_writable(&args.output)?;
     args.std_err.as_deref().map(inputs::check_writable).transpose()?;
     let plan = inputs::plan(&args.rays)?;
@@ -33,9 +33,9 @@ pub fn run(args: &FormFactorsArgs, kernel: KernelKind, console: &Console) -> Res
         cast(&session.tracer(), &emitters, stream, &plan, &|c| c.relative_error(), &|rays| console.advance(rays));
     console.end();
     let f = casting.counts.form_factors();
-    inputs::write(&args.output, &write_form_factors(&f, format, false))?;
-    if let (Some(path), Some(format)) = (&args.std_err, error_format) {
-        inputs::write(path, &write_form_factors(&f, format, true))?;
+    inputs::write(&args.output, &write_matrix(&args.output, &stage, &f, &layout, false)?)?;
+    if let (Some(path), Some(layout)) = (&args.std_err, &error_layout) {
+        inputs::write(path, &write_matrix(path, &stage, &f, layout, true)?)?;
     }
     if casting.reached.missed_target {
         console.notice(&format!("the target error was not reached: {:.2e}", casting.reached.relative_error));
