@@ -15,13 +15,7 @@ const MOST_SURFACES: usize = 3000;
 const LONGEST_NAME: usize = 100;
 
 /// The object, with standard errors in comments.
-pub(super) fn write(
-    path: &Path,
-    f: &FormFactors,
-    rows: &Rows,
-    zone: &str,
-    errors: bool,
-) -> Result<Vec<u8>, FileError> {
+pub(super) fn write(path: &Path, f: &FormFactors, rows: &Rows, zone: &str, errors: bool) -> Result<Vec<u8>, FileError> {
     if errors {
         let problem = "cannot hold standard errors: EnergyPlus has no object for them";
         return Err(FileError::new(path, problem).mend("use .npz, .csv, .mtx or .vf"));
@@ -29,7 +23,9 @@ pub(super) fn write(
     let n = rows.len();
     if n > MOST_SURFACES {
         let problem = format!("would need {n} x {n} lines");
-        return Err(FileError::new(path, problem).mend("put the polygons of a wall into one surface (a mesh, or a group)"));
+        return Err(
+            FileError::new(path, problem).mend("put the polygons of a wall into one surface (a mesh, or a group)")
+        );
     }
     check_names(path, rows, zone)?;
     let sums = (0..n).map(|i| f.row_sum(i));
@@ -74,7 +70,10 @@ fn check_names(path: &Path, rows: &Rows, zone: &str) -> Result<(), FileError> {
             Err(FileError::new(path, problem).mend(mend))
         };
         if name.contains([',', ';', '!']) {
-            return refuse("holds a comma, semicolon or exclamation mark", "rename it in the scene (a zone: zone=NAME)");
+            return refuse(
+                "holds a comma, semicolon or exclamation mark",
+                "rename it in the scene (a zone: zone=NAME)",
+            );
         }
         if name.chars().count() > LONGEST_NAME {
             return refuse(&format!("has more than {LONGEST_NAME} characters"), "give it a shorter one");

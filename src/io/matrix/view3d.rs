@@ -139,16 +139,17 @@ impl Output {
                 continue;
             }
             for word in line.split_whitespace() {
-                let value = word.parse::<f64>().map_err(|_| {
-                    reader.wrong(format!("\"{}\" is not a number", word.escape_debug())).at(place())
-                })?;
+                let value = word
+                    .parse::<f64>()
+                    .map_err(|_| reader.wrong(format!("\"{}\" is not a number", word.escape_debug())).at(place()))?;
                 numbers.push(value);
             }
         }
         let needed = n.checked_mul(n).and_then(|q| q.checked_add(2 * n));
         if needed != Some(numbers.len()) {
             let have = numbers.len();
-            let problem = format!("holds {have} numbers; {n} surfaces need {n} areas, {n} x {n} factors, {n} emittances");
+            let problem =
+                format!("holds {have} numbers; {n} surfaces need {n} areas, {n} x {n} factors, {n} emittances");
             return Err(reader.wrong(problem).mend("is it cut off?"));
         }
         let errors = (errors.len() == n * n).then_some(errors);
@@ -177,7 +178,8 @@ impl Output {
         for (row, (i, area)) in patches.iter().zip(&self.areas).enumerate() {
             let own = stage.patches[*i].area;
             if (own - area).abs() > AREA_TOLERANCE * own.max(*area) {
-                let problem = format!("has the area {area}, but patch {i} ({}) has {own:.6} m2", stage.surface_name(*i));
+                let problem =
+                    format!("has the area {area}, but patch {i} ({}) has {own:.6} m2", stage.surface_name(*i));
                 let mend = "is it the file of another scene, in other units, or with rows in another order?";
                 return Err(FileError::new(path, problem).at(format!("row {}", row + 1)).mend(mend));
             }

@@ -163,7 +163,9 @@ impl Assembly<'_> {
 
     /// Pieces of a subsurface, wound like its base, with those of the base.
     fn pairs(&self, index: usize, base: usize) -> impl Iterator<Item = (Vec<DVec3>, &Vec<DVec3>)> {
-        self.wound_like(index, base).into_iter().flat_map(move |a| self.outlines[base].iter().map(move |b| (a.clone(), b)))
+        self.wound_like(index, base)
+            .into_iter()
+            .flat_map(move |a| self.outlines[base].iter().map(move |b| (a.clone(), b)))
     }
 
     fn wound_like(&self, index: usize, base: usize) -> Vec<Vec<DVec3>> {

@@ -94,7 +94,11 @@ impl<'a> Reader<'a> {
         if number == next {
             return Ok(());
         }
-        self.refuse(Refusal::Number, &format!("it has the number {number}"), "number from 1 without gaps, in file order")
+        self.refuse(
+            Refusal::Number,
+            &format!("it has the number {number}"),
+            "number from 1 without gaps, in file order",
+        )
     }
 }
 
@@ -149,7 +153,12 @@ fn is_blast(check: Check, records: &[Record]) -> Checked<bool> {
         "3a" | "3A" => Ok(true),
         _ => {
             let message = format!("the geometry \"{}\" is not read", form.escape_debug());
-            check.refuse(Refusal::Format, span, message, "write F 3 (vertices and surfaces) or F 3a (origin and angles)")
+            check.refuse(
+                Refusal::Format,
+                span,
+                message,
+                "write F 3 (vertices and surfaces) or F 3a (origin and angles)",
+            )
         }
     }
 }
@@ -178,7 +187,12 @@ fn control(check: Check, record: &Record, file: &mut File) -> Checked<()> {
         match key.to_ascii_lowercase().as_str() {
             "encl" if value.parse::<i64>().is_err() => {
                 let message = format!("encl is \"{}\", not a whole number", value.escape_debug());
-                return check.refuse(Refusal::Number, record.span(), message, "write encl=1 for an enclosure, else encl=0");
+                return check.refuse(
+                    Refusal::Number,
+                    record.span(),
+                    message,
+                    "write encl=1 for an enclosure, else encl=0",
+                );
             }
             "encl" => file.encloses = set,
             "emit" if set => file.notices.push(format!(

@@ -41,7 +41,8 @@ pub(super) fn blast(reader: &mut Reader, shape: &Word) -> Checked<Vec<DVec3>> {
         Some(s @ ('T' | 'Q')) => {
             let mut corners = Vec::with_capacity(4);
             for k in 1..=if s == 'T' { 3 } else { 4 } {
-                corners.push((reader.number(&format!("x of corner {k}"))?, reader.number(&format!("y of corner {k}"))?));
+                corners
+                    .push((reader.number(&format!("x of corner {k}"))?, reader.number(&format!("y of corner {k}"))?));
             }
             corners
         }
