@@ -1,6 +1,7 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
 use super::values::{Fraction, PerLevel, Pixels, Quantity, Span, StateChoice};
+use crate::io::MatrixLayout;
 use clap::{ArgMatches, Args, FromArgMatches, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -127,7 +128,7 @@ pub enum SetupCommand {
 /// Which scene, in which state.
 #[derive(Debug, Clone, Args)]
 pub struct SceneArgs {
-    /// Scene file, mesh (.obj, .ply, .gltf, .glb), or builtin:NAME.
+    /// Scene file, mesh (.obj, .ply, .gltf, .glb), View3D input (.vs3), or builtin:NAME.
     pub scene: String,
     /// State of a scene with edits: initial, the number of edits applied, or final.
     #[arg(long, default_value = "final", value_name = "initial|K|final")]
@@ -187,12 +188,19 @@ pub struct FormFactorsArgs {
     /// Rays.
     #[command(flatten)]
     pub rays: RayArgs,
-    /// .npz (SciPy CSR), .csv or .mtx.
+    /// .npz (SciPy CSR), .csv, .mtx, .vf (View3D) or .idf (EnergyPlus).
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
+    /// Format whatever the ending: npz, csv, mtx, view3d, energyplus; with details as csv:by=surface, csv:names,
+    /// view3d:by=patch, energyplus:zone=NAME.
+    #[arg(long, value_name = "FORMAT")]
+    pub format: Option<MatrixLayout>,
     /// Standard errors likewise.
     #[arg(long, value_name = "FILE")]
     pub std_err: Option<PathBuf>,
+    /// Make the matrix reciprocal, its rows closed and nowhere negative, by weighted least squares.
+    #[arg(long)]
+    pub enforce: bool,
 }
 
 /// `etalon form-factors ...`: cast a matrix, or look at one that is there.

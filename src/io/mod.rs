@@ -18,7 +18,10 @@ pub use claim::{Claim, end_claims};
 pub use error::FileError;
 pub use folder::write_folder;
 pub use journal::{Found, Journal};
-pub use matrix::{MatrixFormat, read_form_factors, write_form_factors};
+pub use matrix::{
+    Level, MatrixFormat, MatrixLayout, MatrixStyle, read_form_factors, read_form_factors_of, write_form_factors,
+    write_matrix,
+};
 pub use patches::{PatchFormat, write_patches};
 pub use solution::{BandNames, SolutionFile, SolutionFormat, read_solution, write_solution};
 pub use store::{Files, StoredReference, is_reference};

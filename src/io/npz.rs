@@ -52,6 +52,23 @@ pub(super) fn byte_string(text: &str) -> Vec<u8> {
     out
 }
 
+/// An array of texts (`<U...`), which NumPy reads without pickle.
+pub(super) fn texts(list: &[String]) -> Vec<u8> {
+    let longest = list.iter().map(|t| t.chars().count()).max().unwrap_or(0).max(1);
+    let mut header = format!("{{'descr': '<U{longest}', 'fortran_order': False, 'shape': ({},), }}", list.len());
+    // Magic, version and length take 10 bytes, the line end one; the data begin at a multiple of 64.
+    header.push_str(&" ".repeat((64 - (11 + header.len()) % 64) % 64));
+    header.push('\n');
+    let mut out = b"\x93NUMPY\x01\x00".to_vec();
+    out.extend((header.len() as u16).to_le_bytes());
+    out.extend(header.as_bytes());
+    for text in list {
+        let padded = text.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest);
+        padded.for_each(|c| out.extend(c.to_le_bytes()));
+    }
+    out
+}
+
 /// Members of an `.npz` by name, undone.
 pub(super) fn unzip(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Vec<u8>>, FileError> {
     let broken = |e: &dyn std::fmt::Display| {

@@ -9,5 +9,6 @@ mod transport;
 
 pub use continuous::{ContinuousReference, compute_continuous};
 pub use error::ReferenceError;
+pub use pair_check::check_pairs;
 pub use patch_system::{Kept, Options, Progress, Reference, check_size, compute, compute_on};
 pub use self_check::{Evidence, test_reciprocity};

@@ -17,8 +17,9 @@ const LEAST_STEPS: f64 = 200.0;
 /// Gaps of an enclosure that other checks let pass.
 const GAP: f64 = 1e-6;
 
-/// Both checks. `matrix` is the whole matrix, rays included.
-pub(super) fn of_pairs(
+/// Pairs settled without rays against the rays of `counts`, and rows against closure. `matrix` is the whole matrix,
+/// rays included.
+pub fn check_pairs(
     stage: &Stage,
     pairs: &PairFactors,
     counts: &HitCounts,

@@ -1,7 +1,7 @@
 //! Level (a): the patch-constant system, solved with ray-cast form factors.
 
 use super::ReferenceError;
-use super::pair_check;
+use super::pair_check::check_pairs;
 use super::self_check::{self, Evidence};
 use super::transport::LeaveOneOut;
 use crate::estimate::{
@@ -165,7 +165,7 @@ pub fn compute_on(
     let form_factors = blend(settled.as_ref(), counts).form_factors();
     let mut self_check = self_check::run(stage, counts, &solved.mean, solved.residual, tracer.is_enclosure(), evidence);
     if let Some(pairs) = &settled {
-        self_check.checks.extend(pair_check::of_pairs(stage, pairs, counts, &form_factors, tracer.is_enclosure()));
+        self_check.checks.extend(check_pairs(stage, pairs, counts, &form_factors, tracer.is_enclosure()));
     }
     Ok(Reference {
         form_factors,

@@ -23,7 +23,7 @@ pub use contact::COINCIDENCE_TOLERANCE;
 pub use error::SceneError;
 pub use finding::{Consequence, Finding, FindingKind, Place, Severity};
 pub use lighting::{Distribution, PointLight, Receiver};
-pub use model::{Edit, Face, Grid, Material, Scene, Surface, Transform};
+pub use model::{Edit, Face, Grid, Material, OBSTRUCTIONS, Scene, Surface, Transform};
 pub use numbering::{MAX_ELEMENTS, MAX_PATCHES};
 pub use region::Region;
 pub use shared::SharedArea;

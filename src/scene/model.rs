@@ -5,6 +5,9 @@ use crate::math::DVec3;
 use crate::view::{Camera, Photometry};
 use serde::{Deserialize, Serialize};
 
+/// Object of what only blocks (View3D's `O`): form factors by surface leave it out.
+pub const OBSTRUCTIONS: &str = "obstructions";
+
 /// A scene file, read and validated.
 #[derive(Debug, Clone)]
 pub struct Scene {

@@ -1,23 +1,24 @@
 //! `etalon form-factors`
 
-use super::inputs;
+use super::{form_factors_told as told, inputs};
 use crate::cli::args::FormFactorsArgs;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::estimate::{Blend, Casting, Estimator, HitCounts, PairFactors, Plan, cast, patch_emitters, settle};
-use crate::io::{MatrixFormat, write_form_factors};
+use crate::formfactor::{Surroundings, enforce};
+use crate::io::{MatrixLayout, write_matrix};
 use crate::raycast::KernelKind;
-use crate::reference::{Progress, test_reciprocity};
+use crate::reference::{Progress, check_pairs, test_reciprocity};
 use crate::sampling::{Role, Stream};
-use crate::solution::FormFactors;
+use crate::solution::{FormFactors, SelfCheck};
 use crate::study::Session;
 use serde_json::{Value, json};
 use std::time::Instant;
 
 pub fn run(args: &FormFactorsArgs, kernel: KernelKind, console: &Console) -> Result<u8, Failure> {
     let begin = Instant::now();
-    let format = MatrixFormat::of(&args.output)?;
-    let error_format = args.std_err.as_deref().map(MatrixFormat::of).transpose()?;
+    let layout = MatrixLayout::of(&args.output, args.format.as_ref())?;
+    let error_layout = args.std_err.as_deref().map(|path| layout.of_errors(path)).transpose()?;
     inputs::check_writable(&args.output)?;
     args.std_err.as_deref().map(inputs::check_writable).transpose()?;
     let plan = inputs::plan(&args.rays)?;
@@ -25,17 +26,30 @@ pub fn run(args: &FormFactorsArgs, kernel: KernelKind, console: &Console) -> Res
     crate::reference::check_size(&stage, &plan)?;
     let session = inputs::session(&stage, kernel, console)?;
     let work = Work::of(&session, &plan, args.rays.seed, console);
-    let f = work.blend().form_factors();
-    inputs::write(&args.output, &write_form_factors(&f, format, false))?;
-    if let (Some(path), Some(format)) = (&args.std_err, error_format) {
-        inputs::write(path, &write_form_factors(&f, format, true))?;
+    let raw = work.blend().form_factors();
+    let checks = work.checks(&session, &raw);
+    let enforced = args.enforce.then(|| enforce(&raw, &Surroundings::of(&stage, session.is_enclosure())));
+    let f = enforced.as_ref().map_or(&raw, |e| &e.form_factors);
+    inputs::write(&args.output, &write_matrix(&args.output, &stage, f, &layout, false)?)?;
+    if let (Some(path), Some(layout)) = (&args.std_err, &error_layout) {
+        inputs::write(path, &write_matrix(path, &stage, f, layout, true)?)?;
     }
     if plan.target_error.is_some_and(|target| work.relative_error > target) {
         console.notice(&format!("the target error was not reached: {:.2e}", work.relative_error));
     }
-    let json = summary(&session, &plan, &work, &f, begin.elapsed().as_secs_f64());
-    console.result(&text(&session, &work, &f, args), &json);
-    Ok(exit::DONE)
+    let mut json = summary(&session, &plan, &work, f, begin.elapsed().as_secs_f64());
+    json["self_check"] = json!(checks.checks);
+    json["passed_self_check"] = json!(checks.passed());
+    let mut text = text(&session, &work, f, args);
+    if let Some(e) = &enforced {
+        json["enforcement"] = json!(e.info);
+        text = format!("{text}\n{}", told::enforcement(&stage, &e.info).trim_end());
+    }
+    console.result(&text, &json);
+    for c in checks.failures() {
+        console.notice(&format!("the matrix failed its self-check of {}: {}", c.name, c.finding));
+    }
+    Ok(if checks.passed() { exit::DONE } else { exit::SELF_CHECK })
 }
 
 /// Rays per patch that count once more what was settled without them, where no pair is left to rays.
@@ -71,6 +85,12 @@ impl Work {
         let casting = cast(&session.tracer(), &emitters, stream, &plan, &error, &|rays| console.advance(rays));
         console.end();
         Self { relative_error: casting.reached.relative_error, pairs, casting }
+    }
+
+    /// What was settled without rays, counted by rays and summed up.
+    fn checks(&self, session: &Session, f: &FormFactors) -> SelfCheck {
+        let of = |p| check_pairs(session.stage(), p, &self.casting.counts, f, session.is_enclosure());
+        SelfCheck { checks: self.pairs.as_ref().map_or(Vec::new(), of) }
     }
 
     fn blend(&self) -> Blend<'_> {

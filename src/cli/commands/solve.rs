@@ -5,7 +5,7 @@ use crate::cli::args::SolveArgs;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
-use crate::io::{BandNames, MatrixFormat, SolutionFormat, read_form_factors, write_form_factors, write_solution};
+use crate::io::{BandNames, MatrixLayout, SolutionFormat, read_form_factors_of, write_matrix, write_solution};
 use crate::methods::Method;
 use crate::raycast::KernelKind;
 use crate::reference::check_size;
@@ -15,11 +15,11 @@ use serde_json::json;
 pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8, Failure> {
     let format = SolutionFormat::of(&args.output)?;
     inputs::check_writable(&args.output)?;
-    let matrix_format = args.save_form_factors.as_deref().map(MatrixFormat::of).transpose()?;
+    let layout = args.save_form_factors.as_deref().map(MatrixLayout::for_reuse).transpose()?;
     args.save_form_factors.as_deref().map(inputs::check_writable).transpose()?;
     let method = method(args)?;
     let stage = inputs::stage(&args.scene, console)?;
-    let given = args.form_factors.as_deref().map(|f| read_form_factors(f, stage.patch_count())).transpose()?;
+    let given = args.form_factors.as_deref().map(|f| read_form_factors_of(f, &stage)).transpose()?;
     if let (Method::Gather(p), None) = (&method, &given) {
         check_size(&stage, &p.plan())?;
     }
@@ -32,8 +32,8 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
     let (hash, present) = (stage.hash(), receivers.present());
     let names = BandNames { scene: &stage.name, scene_hash: &hash, bands: &stage.photometry.bands, present: &present };
     inputs::write(&args.output, &write_solution(&outcome.radiosity, names, format))?;
-    if let (Some(path), Some(format)) = (&args.save_form_factors, matrix_format) {
-        inputs::write(path, &write_form_factors(&outcome.form_factors, format, false))?;
+    if let (Some(path), Some(layout)) = (&args.save_form_factors, &layout) {
+        inputs::write(path, &write_matrix(path, &stage, &outcome.form_factors, layout, false)?)?;
     }
     let sums = outcome.info.row_sums;
     let text = format!(

@@ -59,7 +59,8 @@ pub(super) fn read_mesh(path: &Path, options: &SceneOptions) -> Checked<Scene> {
     Ok(scene)
 }
 
-fn refusal(path: &Path, e: &SceneError) -> SceneFileError {
+/// A fault of the scene as a whole, as that of its one file.
+pub(super) fn refusal(path: &Path, e: &SceneError) -> SceneFileError {
     let kind = match e {
         SceneError::TooMany { .. } => Refusal::Counts,
         _ => Refusal::Geometry,

@@ -5,6 +5,7 @@ use super::alone::{is_mesh, read_mesh};
 use super::check::known_names;
 use super::error::{Refusal, SceneFileError};
 use super::read::{parse_text, read_scene};
+use super::view3d::{is_view3d, read_view3d};
 use crate::scene::Scene;
 use std::path::Path;
 
@@ -53,12 +54,16 @@ pub fn builtin(name: &str) -> Option<Scene> {
     parse_text(name, builtin_text(name)?, &SceneOptions::default()).ok()
 }
 
-/// Opens `builtin:NAME`, the scene file at a path, or a mesh (`.obj`, `.ply`, `.gltf`, `.glb`) as a scene of one
-/// surface.
+/// Opens `builtin:NAME`, the scene file at a path, View3D input (`.vs3`), or a mesh (`.obj`, `.ply`, `.gltf`, `.glb`)
+/// as a scene of one surface.
 pub fn open_scene(spec: &str, options: &SceneOptions) -> Result<Scene, SceneFileError> {
     let Some(name) = spec.strip_prefix("builtin:") else {
         let path = Path::new(spec);
-        return if is_mesh(path) { read_mesh(path, options) } else { read_scene(path, options) };
+        return match path {
+            _ if is_mesh(path) => read_mesh(path, options),
+            _ if is_view3d(path) => read_view3d(path, options),
+            _ => read_scene(path, options),
+        };
     };
     match builtin_text(name) {
         Some(text) => parse_text(name, text, options),

@@ -1,4 +1,4 @@
-//! The scene file `etalon-scene/1` (TOML) and the meshes it names (OBJ with MTL, PLY, glTF).
+//! The scene file `etalon-scene/1` (TOML), the meshes it names (OBJ with MTL, PLY, glTF), and View3D input.
 
 mod alone;
 mod builtin;
@@ -15,6 +15,7 @@ mod raw;
 mod read;
 mod source;
 mod surfaces;
+mod view3d;
 
 pub use builtin::{builtin, builtin_names, builtin_text, open_scene};
 pub use error::{Refusal, SceneFileError};

@@ -18,6 +18,7 @@ use super::polygon::Division;
 use super::source::Source;
 use crate::scene::Face;
 use model::{At, Mesh, MeshFault};
+pub(super) use split::ears;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;

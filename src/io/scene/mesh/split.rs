@@ -4,7 +4,7 @@ use crate::math::{DVec3, Frame, unit_normal};
 
 /// Ears cut off one after the other, the first possible one each time: a convex quadrilateral falls into
 /// (0, 1, 2) and (0, 2, 3). `None` if the loop crosses itself.
-pub(super) fn ears(corners: &[DVec3]) -> Option<Vec<[DVec3; 3]>> {
+pub(in crate::io::scene) fn ears(corners: &[DVec3]) -> Option<Vec<[DVec3; 3]>> {
     let normal = unit_normal(corners);
     let along = corners.iter().map(|c| *c - corners[0]).find(|d| d.cross(normal).length() > 0.0)?;
     let frame = Frame::with_x_axis(normal, along);
