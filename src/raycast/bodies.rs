@@ -4,8 +4,14 @@ use crate::math::{DVec3, Polytope, unit_normal};
 use crate::scene::Stage;
 use std::collections::{BTreeMap, HashMap};
 
-/// Solids with more faces are taken face by face.
-const MOST_FACES: usize = 48;
+/// Solids with more planes are taken face by face.
+const MOST_PLANES: usize = 48;
+
+/// Solids with more faces are not looked at.
+const MOST_FACES: usize = 20_000;
+
+/// Normals that differ by so little belong to one plane.
+const SAME_NORMAL: f64 = 1e-9;
 
 /// Corners closer than this share of the scene's extent are one.
 const SAME: f64 = 1e-9;
@@ -103,6 +109,7 @@ fn solid(all: &Loops, part: &[usize]) -> Option<Polytope> {
         }
         loops.push(base);
     }
+    let loops = merged(all, loops)?;
     let mut number: BTreeMap<u32, u32> = BTreeMap::new();
     for v in loops.iter().flatten() {
         let next = number.len() as u32;
@@ -116,14 +123,20 @@ fn solid(all: &Loops, part: &[usize]) -> Option<Polytope> {
 
 /// The one loop of edges that only one face has, turned to close the body.
 fn open_rim(loops: &[Vec<u32>]) -> Option<Vec<u32>> {
+    let mut rim = outline(loops)?;
+    rim.reverse();
+    Some(rim)
+}
+
+/// The one loop of edges that are not shared by two of the faces.
+fn outline(loops: &[Vec<u32>]) -> Option<Vec<u32>> {
     let mut half = std::collections::BTreeSet::new();
     for l in loops {
         (0..l.len()).for_each(|k| {
             half.insert((l[k], l[(k + 1) % l.len()]));
         });
     }
-    let open: BTreeMap<u32, u32> =
-        half.iter().filter(|(a, b)| !half.contains(&(*b, *a))).map(|(a, b)| (*b, *a)).collect();
+    let open: BTreeMap<u32, u32> = half.iter().filter(|(a, b)| !half.contains(&(*b, *a))).copied().collect();
     let start = *open.keys().next()?;
     let mut rim = vec![start];
     let mut at = open[&start];
@@ -132,6 +145,33 @@ fn open_rim(loops: &[Vec<u32>]) -> Option<Vec<u32>> {
         at = *open.get(&at)?;
     }
     (rim.len() == open.len()).then_some(rim)
+}
+
+/// Faces in one plane as one face, without the corners in the middle of its sides; `None` for more planes than solids
+/// may have, or where the faces of a plane do not hang together.
+fn merged(all: &Loops, loops: Vec<Vec<u32>>) -> Option<Vec<Vec<u32>>> {
+    let corner = |v: u32| all.vertices[v as usize];
+    let mut planes: Vec<(DVec3, Vec<Vec<u32>>)> = Vec::new();
+    for l in loops {
+        let normal = unit_normal(&l.iter().map(|v| corner(*v)).collect::<Vec<_>>());
+        // Of a convex body, no two planes have one normal.
+        match planes.iter().position(|(n, _)| n.distance(normal) <= SAME_NORMAL) {
+            Some(k) => planes[k].1.push(l),
+            None if planes.len() == MOST_PLANES => return None,
+            None => planes.push((normal, vec![l])),
+        }
+    }
+    let face = |faces: &Vec<Vec<u32>>| {
+        let rim = if let [one] = faces.as_slice() { one.clone() } else { outline(faces)? };
+        let n = rim.len();
+        let turns = |k: &usize| {
+            let [a, b, c] = [rim[(k + n - 1) % n], rim[*k], rim[(k + 1) % n]].map(corner);
+            (b - a).cross(c - b).length() > SAME_NORMAL * (b - a).length() * (c - b).length()
+        };
+        let corners: Vec<u32> = (0..n).filter(turns).map(|k| rim[k]).collect();
+        (corners.len() >= 3).then_some(corners)
+    };
+    planes.iter().map(|(_, faces)| face(faces)).collect()
 }
 
 /// Whether the rim lies in one plane and on one face of another part: whatever passes through it meets that face.
@@ -151,4 +191,69 @@ fn stands_on(all: &Loops, part: &[usize], rim: &[u32]) -> bool {
         })
     };
     (0..all.faces.len()).any(|f| !part.contains(&f) && carries(f))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Faces of a box in `n` x `n` cells each, wound outwards; `open`: without its bottom.
+    fn block(lo: DVec3, hi: DVec3, n: usize, open: bool) -> Vec<Vec<DVec3>> {
+        let mut out = Vec::new();
+        for axis in 0..3 {
+            for high in [false, true] {
+                if open && axis == 2 && !high {
+                    continue;
+                }
+                let at = |u: f64, v: f64| {
+                    let mut t = DVec3::ZERO;
+                    t[axis] = f64::from(u8::from(high));
+                    t[(axis + 1) % 3] = u;
+                    t[(axis + 2) % 3] = v;
+                    lo + t * (hi - lo)
+                };
+                let step = |k: usize| k as f64 / n as f64;
+                for (a, b) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b))) {
+                    let mut cell = vec![
+                        at(step(a), step(b)),
+                        at(step(a + 1), step(b)),
+                        at(step(a + 1), step(b + 1)),
+                        at(step(a), step(b + 1)),
+                    ];
+                    if !high {
+                        cell.reverse();
+                    }
+                    out.push(cell);
+                }
+            }
+        }
+        out
+    }
+
+    #[test]
+    fn a_box_of_many_faces_is_one_body_of_six_planes() {
+        let found = bodies(&Stage::from_polygons(&block(DVec3::ZERO, DVec3::ONE, 3, false)));
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].planes().len(), found[0].vertices().len(), found[0].edges().len()), (6, 8, 12));
+    }
+
+    #[test]
+    fn a_box_without_bottom_is_a_body_only_where_it_stands_on_something() {
+        let open = || block(DVec3::new(0.2, 0.2, 0.0), DVec3::new(0.4, 0.5, 0.3), 1, true);
+        assert_eq!(bodies(&Stage::from_polygons(&open())).len(), 5);
+        let mut standing = open();
+        standing.push([(0., 0.), (1., 0.), (1., 1.), (0., 1.)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec());
+        let found = bodies(&Stage::from_polygons(&standing));
+        assert_eq!(found.iter().map(|b| b.planes().len()).collect::<Vec<_>>(), [6, 2]);
+    }
+
+    #[test]
+    fn rooms_and_plates_are_taken_face_by_face() {
+        let mut room = block(DVec3::ZERO, DVec3::ONE, 1, false);
+        room.iter_mut().for_each(|f| f.reverse());
+        assert_eq!(bodies(&Stage::from_polygons(&room)).len(), 6);
+        let plate: Vec<DVec3> = [(0., 0.), (1., 0.), (0., 1.)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        let back = plate.iter().rev().copied().collect();
+        assert_eq!(bodies(&Stage::from_polygons(&[plate, back])).len(), 1);
+    }
 }

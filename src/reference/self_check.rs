@@ -153,6 +153,9 @@ fn energy(stage: &Stage, counts: &HitCounts, mean: &[f64]) -> Check {
     }
     let tested: Vec<(f64, f64)> =
         defects.iter().zip(&sent).filter(|(_, s)| **s > 0.0).map(|(d, s)| relative_mean(d, *s)).collect();
+    if tested.is_empty() {
+        return check("energy", true, "not tested: nothing shines".into());
+    }
     let worst = tested.iter().map(|(m, se)| t_or_one(*m, *se, r)).fold(1.0, f64::min);
     let largest = tested.iter().map(|(m, _)| m.abs()).fold(0.0, f64::max);
     let noise = tested.iter().map(|(_, se)| *se).fold(0.0, f64::max);

@@ -8,6 +8,9 @@ use std::sync::OnceLock;
 /// Steps of two grids that differ by so little (relative) are the same step.
 const SAME_STEP: f64 = 1e-12;
 
+/// The same for how far two grids are out of step.
+const SAME_PLACE: f64 = 1e-10;
+
 /// Exchanges of the pairs of two sides, by how they lie to each other.
 pub(super) struct Congruent {
     grids: [Lattice; 2],
@@ -16,6 +19,8 @@ pub(super) struct Congruent {
     /// Lowest place along the axes of the first grid, and number of places.
     low: [i64; 2],
     width: [i64; 2],
+    /// Along an axis at right angles to all else, places p and `mirror - p` are images of each other.
+    mirror: [Option<i64>; 2],
     values: Vec<OnceLock<f64>>,
 }
 
@@ -41,11 +46,13 @@ impl Congruent {
         let width = [high[0] - low[0] + 1, high[1] - low[1] + 1];
         let size = usize::try_from(size * width[0] * width[1]).ok()?;
         let worthwhile = size * 2 <= first.patches.len() * second.patches.len();
+        let mirror = [0, 1].map(|m| mirrored(&p, &q, m, along));
         worthwhile.then(|| Self {
             grids: [p, q],
             along,
             low,
             width,
+            mirror,
             values: (0..size).map(|_| OnceLock::new()).collect(),
         })
     }
@@ -63,6 +70,12 @@ impl Congruent {
                     alone += stride * own[k];
                     stride *= i64::from(self.grids[1].size[k]);
                 }
+            }
+        }
+        for m in 0..2 {
+            let image = self.mirror[m].map_or(place[m], |sum| sum - place[m]);
+            if (self.low[m]..self.low[m] + self.width[m]).contains(&image) {
+                place[m] = place[m].min(image);
             }
         }
         let at = place[0] - self.low[0] + self.width[0] * (place[1] - self.low[1] + self.width[1] * alone);
@@ -85,6 +98,20 @@ impl Congruent {
         let number = |[a, b]: [i64; 2], grid: &Lattice| (a + b * i64::from(grid.size[0])) as usize;
         (number(at, &self.grids[0]), number(own, &self.grids[1]))
     }
+}
+
+/// What places along axis `m` of the first grid and their mirror images add up to, where mirroring changes nothing.
+fn mirrored(p: &Lattice, q: &Lattice, m: usize, along: [Option<(usize, i64)>; 2]) -> Option<i64> {
+    let u = [p.u, p.v][m];
+    let k = (0..2).find(|k| along[*k].is_some_and(|(to, _)| to == m))?;
+    let square = |v: DVec3| v.dot(u).abs() <= SAME_STEP * v.length() * u.length();
+    if !square([p.v, p.u][m]) || !square([q.v, q.u][k]) {
+        return None;
+    }
+    // The middles of the first cells, in steps: pairs at d and at -d - 2 x this are images of each other.
+    let apart = (p.first - q.first).dot(u) / u.length_squared();
+    let sum = -2.0 * apart;
+    ((sum - sum.round()).abs() <= SAME_PLACE).then(|| sum.round() as i64)
 }
 
 /// +1 or -1 if the steps are the same up to sign.

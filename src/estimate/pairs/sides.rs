@@ -22,6 +22,8 @@ pub(super) struct Lattice {
     pub u: DVec3,
     /// Step from row to row, m.
     pub v: DVec3,
+    /// Middle of the first cell.
+    pub first: DVec3,
     /// Columns and rows.
     pub size: [u32; 2],
 }
@@ -82,7 +84,12 @@ fn lattice(stage: &Stage, numbers: &[u32]) -> Option<Lattice> {
         place.distance(corner(p)) <= CONGRUENT * size
             && shape.is_some_and(|s| s[0].distance(cell[0]) + s[1].distance(cell[1]) <= CONGRUENT * size)
     };
-    (numbers.iter().all(same) && corner(last).is_finite()).then_some(Lattice { u, v, size: [a + 1, b + 1] })
+    (numbers.iter().all(same) && corner(last).is_finite()).then(|| Lattice {
+        u,
+        v,
+        first: corner(first),
+        size: [a + 1, b + 1],
+    })
 }
 
 /// Edge vectors of a patch that is one whole parallelogram.
