@@ -311,6 +311,10 @@ pub struct ReferenceArgs {
     /// same command goes on from there.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
+    /// Also write bounds on the radiosity of every patch, at 95 % for all together (patch, then low and high of each
+    /// band): .csv.
+    #[arg(long, value_name = "FILE")]
+    pub bounds: Option<PathBuf>,
     /// Compute it even if DIR already holds a reference that would do.
     #[arg(long)]
     pub force: bool,

@@ -1,8 +1,11 @@
 //! One matrix from two sources: pairs settled without rays, and hit counts for those that are left.
 
 use super::{Entry, HitCounts, PairFactors};
-use crate::solution::FormFactors;
+use crate::solution::{FormFactorBounds, FormFactors};
 use rayon::prelude::*;
+
+/// Errors of settled pairs are estimates, in tests exceeded thirteenfold at most.
+const MARGIN: f64 = 20.0;
 
 /// Settled pairs beside the ray counts of the others.
 #[derive(Debug)]
@@ -52,6 +55,31 @@ impl<'a> Blend<'a> {
             row
         };
         FormFactors::from_rows((0..self.counts.rows.len()).into_par_iter().map(row).collect())
+    }
+
+    /// Bounds of all form factors that hold together at this confidence: of hit counts their intervals, of settled
+    /// pairs [`MARGIN`] times the stated error. `closed`: rows sum to one.
+    pub fn bounds(&self, confidence: f64, closed: bool) -> FormFactorBounds {
+        let by_rays = self.counts.bounds(confidence, closed);
+        let Some(pairs) = self.settled else { return by_rays };
+        let settled = &pairs.form_factors;
+        let errors = settled.std_err.as_deref().unwrap_or_default();
+        let (mut rows, mut high) = (Vec::with_capacity(settled.n), Vec::new());
+        for i in 0..settled.n {
+            let span = settled.row_starts[i]..settled.row_starts[i + 1];
+            let known = span.map(|k| {
+                let (value, error) = (settled.values[k], MARGIN * errors[k]);
+                (settled.columns[k], (value - error).max(0.0), (value + error).min(1.0))
+            });
+            let mut row: Vec<(u32, f64, f64)> = known.collect();
+            row.extend(by_rays.row(i).map(|(j, low, high)| (j as u32, low, high)));
+            row.sort_unstable_by_key(|e| e.0);
+            high.extend(row.iter().map(|e| e.2));
+            rows.push(row.into_iter().map(|(j, low, _)| (j, low)).collect());
+        }
+        // Where every pair of a row is settled, those that are not stored are proved to be nothing.
+        let unseen = by_rays.unseen.iter().zip(&pairs.left).map(|(u, left)| if left.is_empty() { 0.0 } else { *u });
+        FormFactorBounds { low: FormFactors::from_exact_rows(rows), high, unseen: unseen.collect(), ..by_rays }
     }
 
     /// sqrt(sum se^2) / sqrt(sum F^2) over the matrix.

@@ -5,7 +5,7 @@ use super::pair_check::check_pairs;
 use super::self_check::{self, Evidence};
 use super::transport::LeaveOneOut;
 use crate::estimate::{
-    Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, PairTally, Plan,
+    Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, Plan,
 };
 use crate::estimate::{DirectLight, direct_light, lit_elements, lit_patches};
 use crate::estimate::{cast_on, element_emitters, patch_emitters, settle};
@@ -13,6 +13,7 @@ use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
 use crate::scene::Stage;
 use crate::solution::{FormFactors, Provenance, Replicates, SelfCheck, TruthLevel};
+use crate::solver::bounds::{self, Bracket};
 use crate::solver::{System, krylov};
 use crate::stats::normal_quantile;
 use std::cell::RefCell;
@@ -65,8 +66,10 @@ pub struct Reference {
     pub elements: Option<Replicates>,
     /// Mean form factors with standard errors.
     pub form_factors: FormFactors,
-    /// How pairs were settled without rays, where they were.
-    pub pairs: Option<PairTally>,
+    /// Pairs settled without rays, where they were.
+    pub settled: Option<PairFactors>,
+    /// Hits of all rays.
+    pub counts: HitCounts,
     /// How it was computed.
     pub provenance: Provenance,
     /// What it found about itself.
@@ -75,6 +78,22 @@ pub struct Reference {
     pub waves: Vec<(u64, f64)>,
     /// True if a target error was asked for and not reached.
     pub missed_target: bool,
+}
+
+impl Reference {
+    /// Two-sided bounds on all radiosities, which hold together at this confidence whatever the noise is like:
+    /// every form factor within its bounds, rows that sum to one in a closed scene, and nothing else assumed.
+    ///
+    /// # Errors
+    /// A scene with point lights, whose direct light is known by estimates only; as [`bounds::bracket`].
+    pub fn bracket(&self, stage: &Stage, confidence: f64) -> Result<Bracket, ReferenceError> {
+        if !stage.lights.is_empty() {
+            return Err(ReferenceError::PointLights);
+        }
+        let blend = blend(self.settled.as_ref(), &self.counts);
+        let known = blend.bounds(confidence, self.provenance.enclosure);
+        Ok(bounds::bracket(&Inputs::of(stage).system(), &known, &bounds::Params::default())?)
+    }
 }
 
 /// Emission and reflectance of every patch, row-major.
@@ -170,12 +189,13 @@ pub fn compute_on(
     Ok(Reference {
         form_factors,
         provenance: provenance(tracer, options, &casting),
-        pairs: settled.map(|s| s.tally),
+        settled,
         self_check,
         patches: solved.replicates,
         elements,
         missed_target: casting.reached.missed_target,
         waves: casting.waves,
+        counts: casting.counts,
     })
 }
 

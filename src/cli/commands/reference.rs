@@ -10,11 +10,15 @@ use crate::raycast::{KernelInfo, KernelKind, open_kernels};
 use crate::reference::Options;
 use crate::scene::{Scene, Stage};
 use crate::solution::TruthLevel;
+use crate::solver::bounds::Bracket;
 use crate::study::{self, KeptWork, Session};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
+
+/// Confidence of the bounds.
+const CONFIDENCE: f64 = 0.95;
 
 /// The file that marks a folder as a reference.
 pub const MARKER: &str = "reference.json";
@@ -24,6 +28,7 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     let options = Options { plan: inputs::plan(&args.rays)?, seed: args.rays.seed };
     let scene = inputs::scene(&args.scene.scene, args.scene.max_edge, console)?;
     let stage = inputs::stage_of(&scene, args.scene.state)?;
+    args.bounds.as_deref().map(inputs::check_writable).transpose()?;
     if let Some(stored) = already_there(args, &stage, &options, kernel, console)? {
         let text = text(&stored, &args.output, "is already there in");
         console.result(&text, &summary(&stored, begin.elapsed().as_secs_f64(), true));
@@ -32,6 +37,9 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     let claim = Claim::take(&args.output, MARKER)?;
     let session = inputs::session(&stage, kernel, console)?;
     if args.truth == Truth::Continuous {
+        if args.bounds.is_some() {
+            return Err(Failure::input("--bounds are those of the patch system: leave out --truth continuous"));
+        }
         return continuous(args, &scene, &session, &options, claim, begin, console);
     }
     let work = open_work(&claim, &session, &options, console)?;
@@ -44,6 +52,12 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     let rows = work.flush();
     claim.publish(&stored.files(seconds)).map_err(|e| keep_in_mind(e, rows))?;
     drop(armed);
+    if let Some(path) = &args.bounds {
+        let bracket = reference.bracket(&stage, CONFIDENCE)?;
+        inputs::write(path, &bounds_csv(&stage, &bracket))?;
+        let widest = widest(&stage, &bracket);
+        console.notice(&format!("bounds of all radiosities: {}, at most {widest:.2e} of the brightest apart", path.display()));
+    }
     Ok(finish(args, &stored, reference.missed_target, seconds, console))
 }
 
@@ -83,7 +97,7 @@ fn already_there(
     kernel: KernelKind,
     console: &Console,
 ) -> Result<Option<StoredReference>, Failure> {
-    if args.force || !args.output.join(MARKER).is_file() {
+    if args.force || args.bounds.is_some() || !args.output.join(MARKER).is_file() {
         return Ok(None);
     }
     let again = |why: String| {
@@ -164,6 +178,28 @@ fn keep_in_mind(mut e: FileError, rows: u64) -> FileError {
         e.mend += &format!(" ({} rows of it are kept)", inputs::thousands(rows));
     }
     e
+}
+
+/// Low and high of every band of the patches present.
+fn bounds_csv(stage: &Stage, bracket: &Bracket) -> Vec<u8> {
+    let bands = &stage.photometry.bands;
+    let mut out = String::from("patch");
+    bands.iter().for_each(|b| out += &format!(",{b}_low,{b}_high"));
+    for i in (0..stage.patch_count()).filter(|i| stage.patches[*i].is_present()) {
+        out += &format!("\n{i}");
+        for k in i * bands.len()..(i + 1) * bands.len() {
+            out += &format!(",{},{}", bracket.low[k], bracket.high[k]);
+        }
+    }
+    (out + "\n").into_bytes()
+}
+
+/// The widest bracket, as a share of the highest bound.
+fn widest(stage: &Stage, bracket: &Bracket) -> f64 {
+    debug_assert_eq!(bracket.low.len(), stage.patch_count() * stage.band_count());
+    let brightest = bracket.high.iter().copied().fold(0.0, f64::max);
+    let widest = bracket.high.iter().zip(&bracket.low).map(|(h, l)| h - l).fold(0.0, f64::max);
+    if brightest > 0.0 { widest / brightest } else { 0.0 }
 }
 
 /// Says on stderr which self-checks failed.

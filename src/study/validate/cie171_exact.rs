@@ -24,14 +24,14 @@ pub(super) fn reflector(receiver: &Receiver, side: f64) -> f64 {
     100.0 * point_to_polygon(receiver.position, receiver.normal, &square)
 }
 
-/// 5.7: what the box leaves of the wall y = 4 of reflectance 0.6, percent of what falls on the wall.
+/// 5.7: what the box leaves of the wall y = 4, percent of what the wall reflects.
 pub(super) fn reflector_behind_box(receiver: &Receiver) -> f64 {
     let low = shadow_height(receiver.position.y, receiver.position.z);
     if low >= 3.0 {
         return 0.0;
     }
     let seen = [[0.0, low], [4.0, low], [4.0, 3.0], [0.0, 3.0]].map(|[x, z]| DVec3::new(x, 4.0, z));
-    60.0 * point_to_polygon(receiver.position, receiver.normal, &seen)
+    100.0 * point_to_polygon(receiver.position, receiver.normal, &seen)
 }
 
 /// Height on the wall y = 4 below which the box (y 2.5 to 2.7, z 0 to 1, as wide as the wall) hides it from (y, z).
