@@ -1,7 +1,8 @@
 //! **etalon**: a ray-traced reference validator and error-metric toolkit for radiosity and view factors.
 //!
-//! Every method is a candidate; the ray-cast engine is the judge; the judge is judged by closed forms, by a second
-//! kernel, by energy balance and by its own error bars.
+//! Every method is a candidate; the engine is the judge: form factors in closed form and by exact shadows where that
+//! can be had, by rays elsewhere. The judge is judged by rays cast again, by closed forms, by a second kernel, by
+//! energy balance and by its own error bars.
 //!
 //! # In a test of your solver
 //!
