@@ -55,7 +55,7 @@ pub mod stats;
 pub mod study;
 pub mod view;
 
-pub use api::{Check, Error, Reference, ReferenceOptions, examine_scene, open_scene, solve};
+pub use api::{Check, Error, Estimator, Reference, ReferenceOptions, examine_scene, open_scene, solve};
 pub use metrics::{Comparison, Limits, Verdict, WorstPatch};
 pub use raycast::KernelKind;
 pub use scene::{Finding, Patch, Scene, Stage};

@@ -1,8 +1,8 @@
 //! The library's front: a reference computed, stored, opened, and verdicts asserted.
 
 use etalon::{
-    Error, KernelKind, Limits, Radiosity, Reference, ReferenceOptions, Stage, Verdict, assert_verdict, open_scene,
-    solve,
+    Error, Estimator, KernelKind, Limits, Radiosity, Reference, ReferenceOptions, Stage, Verdict, assert_verdict,
+    open_scene, solve,
 };
 
 fn stage() -> Stage {
@@ -10,7 +10,7 @@ fn stage() -> Stage {
 }
 
 fn options(rays: u64) -> ReferenceOptions {
-    ReferenceOptions::default().rays(rays).kernel(KernelKind::Builtin)
+    ReferenceOptions::default().estimator(Estimator::Rays).rays(rays).kernel(KernelKind::Builtin)
 }
 
 fn reference() -> Reference {

@@ -11,8 +11,8 @@ use std::path::Path;
 /// Coarse Cornell box, cast into `f.csv` (errors in its own column), `f.npz` and `se.npz`.
 fn workshop() -> tempfile::TempDir {
     let place = tempfile::tempdir().expect("a folder");
-    ok(place.path(), "form-factors builtin:cornell-box-coarse -o f.csv --rays 4096");
-    ok(place.path(), "form-factors builtin:cornell-box-coarse -o f.npz --std-err se.npz --rays 4096");
+    ok(place.path(), "form-factors builtin:cornell-box-coarse -o f.csv --rays 4096 --estimator rays");
+    ok(place.path(), "form-factors builtin:cornell-box-coarse -o f.npz --std-err se.npz --rays 4096 --estimator rays");
     place
 }
 
@@ -68,7 +68,7 @@ fn rays_of_ours_pass_and_come_out_closed_and_reciprocal() {
 fn a_closed_room_is_closed_and_the_same_on_any_number_of_threads() {
     let place = tempfile::tempdir().expect("a folder");
     let here = place.path();
-    ok(here, "form-factors builtin:furnace -o f.csv --rays 1024");
+    ok(here, "form-factors builtin:furnace -o f.csv --rays 1024 --estimator rays");
     let told =
         json(here, "form-factors repair f.csv --scene builtin:furnace -o one.npz --save-std-err se1.npz --threads 1");
     assert_eq!(told["closed"], true);
@@ -109,7 +109,7 @@ fn classic_mistakes_are_named_and_repaired() {
 fn a_broken_row_is_found_in_its_own_errors() {
     let place = tempfile::tempdir().expect("a folder");
     let here = place.path();
-    ok(here, "form-factors builtin:furnace -o f.csv --rays 4096");
+    ok(here, "form-factors builtin:furnace -o f.csv --rays 4096 --estimator rays");
     let lines = std::fs::read_to_string(here.join("f.csv")).expect("written");
     // Row 5 loses its entries above 1 %.
     let keep = |line: &&str| {
@@ -127,7 +127,7 @@ fn a_broken_row_is_found_in_its_own_errors() {
 fn an_open_scene_is_not_asked_to_close() {
     let place = tempfile::tempdir().expect("a folder");
     let here = place.path();
-    ok(here, "form-factors builtin:opposed-squares -o f.csv --rays 4096");
+    ok(here, "form-factors builtin:opposed-squares -o f.csv --rays 4096 --estimator rays");
     let scene = "--scene builtin:opposed-squares";
     let found = json(here, &format!("form-factors check f.csv {scene}"));
     assert_eq!((&found["physics"]["closed"], &found["physics"]["broken"]), (&Value::from(false), &Value::from(false)));

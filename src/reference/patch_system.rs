@@ -4,9 +4,7 @@ use super::ReferenceError;
 use super::pair_check::check_pairs;
 use super::self_check::{self, Evidence};
 use super::transport::LeaveOneOut;
-use crate::estimate::{
-    Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, Plan,
-};
+use crate::estimate::{Blend, Casting, Checkpoint, Entry, Estimator, HitCounts, NoCheckpoint, PairFactors, Plan};
 use crate::estimate::{DirectLight, direct_light, lit_elements, lit_patches};
 use crate::estimate::{cast_on, element_emitters, patch_emitters, settle};
 use crate::raycast::Tracer;
@@ -20,6 +18,9 @@ use std::cell::RefCell;
 
 /// Relative residual to which patch systems are solved.
 const RESIDUAL: f64 = 1e-12;
+
+/// Rays per patch that count once more what was settled without them, where a target asks for no number.
+const WITNESS_RAYS: u64 = 1_024;
 
 /// Key of the stream that numerical errors are drawn from.
 const NUMERICAL_NOISE: u64 = 0x6e75_6d65;
@@ -92,7 +93,9 @@ impl Reference {
         }
         let blend = blend(self.settled.as_ref(), &self.counts);
         let known = blend.bounds(confidence, self.provenance.enclosure);
-        Ok(bounds::bracket(&Inputs::of(stage).system(), &known, &bounds::Params::default())?)
+        let inputs = Inputs::of(stage);
+        let system = System { emission: &inputs.emission, reflectance: &inputs.reflectance, bands: inputs.bands };
+        Ok(bounds::bracket(&system, &known, &bounds::Params::default())?)
     }
 }
 
@@ -155,7 +158,8 @@ pub fn compute_on(
     let present = emitters.iter().flatten().count();
     progress.begin("settling pairs", Some(present as u64));
     let settled = settle(stage, &options.plan, &|patches| progress.advance(patches));
-    begin_casting(progress, "casting rays", &options.plan, present);
+    let plan = plan_of_rays(stage, &options.plan, settled.as_ref());
+    begin_casting(progress, "casting rays", &plan, present);
 
     // The radiosities of the last wave are kept: where the plan stops, they are the answer.
     let last: RefCell<Option<Result<Solved, ReferenceError>>> = RefCell::new(None);
@@ -172,8 +176,8 @@ pub fn compute_on(
         *last.borrow_mut() = Some(result);
         relative
     };
-    let casting =
-        cast_on(tracer, &emitters, stream, &options.plan, &error, &|rays| progress.advance(rays), kept.patches);
+    let casting = cast_on(tracer, &emitters, stream, &plan, &error, &|rays| progress.advance(rays), kept.patches);
+    let reached = casting.reached.relative_error;
     let solved = last.into_inner().expect("every plan has a wave")?;
     let elements = if stage.has_elements() {
         Some(gather_elements(tracer, &inputs, &solved.replicates, &casting, stream, progress, kept.elements))
@@ -193,10 +197,19 @@ pub fn compute_on(
         self_check,
         patches: solved.replicates,
         elements,
-        missed_target: casting.reached.missed_target,
+        missed_target: options.plan.target_error.is_some_and(|target| reached > target),
         waves: casting.waves,
         counts: casting.counts,
     })
+}
+
+/// Where every pair is settled, rays are witnesses: no number of them brings a target nearer.
+fn plan_of_rays(stage: &Stage, plan: &Plan, settled: Option<&PairFactors>) -> Plan {
+    let all = settled.is_some_and(|s| s.tally.left == 0) && stage.lights.is_empty();
+    if all && plan.target_error.is_some() {
+        return Plan { rays: WITNESS_RAYS, target_error: None, ..*plan };
+    }
+    *plan
 }
 
 fn blend<'a>(settled: Option<&'a PairFactors>, counts: &'a HitCounts) -> Blend<'a> {

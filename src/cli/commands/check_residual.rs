@@ -71,6 +71,11 @@ impl<'a> Run<'a> {
         check_options(args)?;
         let scene = args.scene.as_deref().ok_or_else(|| Failure::input("--residual needs --scene SCENE"))?;
         let stage = inputs::stage_of(&inputs::scene(scene, args.max_edge, console)?, args.state)?;
+        if !stage.lights.is_empty() {
+            let message =
+                "point lights are not taken by --residual in this version: judge by a reference, --reference DIR";
+            return Err(Failure::input(message).at(scene.to_string()));
+        }
         let receivers = Receivers::patches(&stage);
         let solution = solution(args, &receivers, &stage)?;
         let session = inputs::session(&stage, inputs::kernel_kind(kernel), console)?;

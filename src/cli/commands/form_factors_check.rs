@@ -5,7 +5,7 @@ use crate::cli::args::{FormFactorsCheckArgs, MatrixArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::formfactor::{Rule, Surroundings, attach_errors, examine};
-use crate::io::{MatrixFormat, read_form_factors};
+use crate::io::{MatrixFormat, read_form_factors_of};
 use crate::raycast::KernelKind;
 use crate::scene::Stage;
 use crate::solution::FormFactors;
@@ -37,13 +37,13 @@ pub fn stage(args: &MatrixArgs, console: &Console) -> Result<Stage, Failure> {
 
 /// The matrix, with the standard errors of a second file where one is given.
 pub fn matrix(args: &MatrixArgs, stage: &Stage, console: &Console) -> Result<FormFactors, Failure> {
-    let f = read_form_factors(&args.file, stage.patch_count())?;
+    let f = read_form_factors_of(&args.file, stage)?;
     let Some(path) = &args.std_err else { return Ok(f) };
     if MatrixFormat::of(path)? == MatrixFormat::Csv {
         let message = "a .csv matrix has its standard errors in its own column std_err; --std-err takes .npz or .mtx";
         return Err(Failure::input(format!("{}: {message}", path.display())).at(path.display().to_string()));
     }
-    let errors = read_form_factors(path, stage.patch_count())?;
+    let errors = read_form_factors_of(path, stage)?;
     let (with_errors, missing) = attach_errors(f, &errors, &stage.areas());
     let stored = with_errors.stored();
     if 2 * missing > stored {

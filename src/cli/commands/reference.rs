@@ -40,6 +40,10 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
         if args.bounds.is_some() {
             return Err(Failure::input("--bounds are those of the patch system: leave out --truth continuous"));
         }
+        if !stage.lights.is_empty() {
+            let message = "point lights are not taken by --truth continuous in this version: only by the patch system";
+            return Err(Failure::input(message).at(args.scene.scene.clone()));
+        }
         return continuous(args, &scene, &session, &options, claim, begin, console);
     }
     let work = open_work(&claim, &session, &options, console)?;
@@ -56,7 +60,10 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
         let bracket = reference.bracket(&stage, CONFIDENCE)?;
         inputs::write(path, &bounds_csv(&stage, &bracket))?;
         let widest = widest(&stage, &bracket);
-        console.notice(&format!("bounds of all radiosities: {}, at most {widest:.2e} of the brightest apart", path.display()));
+        console.notice(&format!(
+            "bounds of all radiosities: {}, at most {widest:.2e} of the brightest apart",
+            path.display()
+        ));
     }
     Ok(finish(args, &stored, reference.missed_target, seconds, console))
 }

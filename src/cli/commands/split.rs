@@ -3,7 +3,7 @@
 use crate::cli::args::CompareArgs;
 use crate::cli::exit::Failure;
 use crate::cli::values::PerLevel;
-use crate::io::{StoredReference, is_reference, read_form_factors};
+use crate::io::{StoredReference, is_reference, read_form_factors_of};
 use crate::metrics::Split;
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
@@ -40,7 +40,7 @@ pub fn split(
     if args.form_factors.is_none() && args.patch_system.is_none() {
         return Ok(None);
     }
-    let form_factors = args.form_factors.as_deref().map(|f| read_form_factors(f, stage.patch_count())).transpose()?;
+    let form_factors = args.form_factors.as_deref().map(|f| read_form_factors_of(f, stage)).transpose()?;
     let patch_system = args.patch_system.as_deref().map(|path| patch_system(path, reference)).transpose()?;
     let beside = Beside { form_factors: form_factors.as_ref(), patch_system: patch_system.as_ref() };
     let split = split_error(stage, solution, against, &beside, receivers, confidence);

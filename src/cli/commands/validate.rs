@@ -107,7 +107,7 @@ fn summary(rows: &[Row]) -> String {
     let routes = [
         (Route::Polygon, "polygon integrals, no rays"),
         (Route::Catalogue, "catalogue, no rays"),
-        (Route::Rays, "obstructed, by rays"),
+        (Route::Shadows, "obstructed, exact shadows, witnessed by rays"),
         (Route::None, "not answered"),
     ];
     for (route, name) in routes {

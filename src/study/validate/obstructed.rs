@@ -1,19 +1,28 @@
-//! Polygon pairs with polygons between: form factors with an interval. The one place to change when such pairs can be had
-//! without rays.
+//! Polygon pairs with polygons between: by exact shadows, and by rays with an interval.
 
-use crate::estimate::{Plan, cast, patch_emitters};
+use crate::estimate::{PairPlan, Plan, cast, pair_form_factors, patch_emitters};
 use crate::math::DVec3;
 use crate::raycast::{KernelError, KernelKind, Tracer, open_kernels};
 use crate::sampling::{Role, Stream};
 use crate::scene::Stage;
 use crate::stats::{Estimate, form_factor_interval};
 
-/// Form factors there and back between the first two polygons, the others standing between, by `plan.rays` hemisphere
-/// rays each.
+/// Relative error asked for.
+const TARGET: f64 = 1e-13;
+
+/// Form factors there and back between the first two polygons, the others standing between, with their stated errors:
+/// no rays.
+pub(super) fn exchange(polygons: &[Vec<DVec3>]) -> [[f64; 2]; 2] {
+    let plan = PairPlan { target_error: Some(TARGET), arranged_bodies: 6, ..PairPlan::default() };
+    let f = pair_form_factors(&Stage::from_polygons(polygons), &plan, &|_| ()).form_factors;
+    [(0, 1), (1, 0)].map(|(i, j)| [f.get(i, j), f.std_err_of(i, j).unwrap_or(0.0)])
+}
+
+/// The same by `plan.rays` hemisphere rays each.
 ///
 /// # Errors
 /// If the kernel cannot be had.
-pub(super) fn exchange(
+pub(super) fn by_rays(
     polygons: &[Vec<DVec3>],
     kernel: KernelKind,
     plan: &Plan,
