@@ -31,7 +31,7 @@ fn the_three_verdicts_and_their_codes() {
     assert!((v["rms"]["value"].as_f64().expect("a number") - 0.05).abs() < 1e-9, "{v}");
     assert!((v["bias"]["value"].as_f64().expect("a number") - 0.05).abs() < 1e-9, "{v}");
     // Few rays against a tight limit on a scene with noise.
-    ok(here, "reference builtin:cube-one-emitter -o noisy --rays 256");
+    ok(here, "reference builtin:cube-one-emitter -o noisy --rays 256 --estimator rays");
     ok(here, "solve builtin:cube-one-emitter --method gather:rays=65536 -o cube.csv");
     let tight = "check cube.csv --reference noisy --max-rms 0.1%";
     let (code, out, err) = run(here, tight);

@@ -140,11 +140,13 @@ fn mistakes_of_the_user_are_refused_before_anything_is_written() {
     let place = workshop();
     let here = place.path();
     let scene = "--scene builtin:cornell-box-coarse";
+    // The one format that has no room for standard errors.
+    ok(here, "form-factors builtin:cornell-box-coarse -o f.mtx --rays 256 --estimator rays");
     let message = refused(here, "form-factors check f.npz --scene builtin:furnace");
     assert!(message.contains("f.npz") && message.contains("patches"), "{message}");
     let message = refused(here, &format!("form-factors check f.npz {scene} --std-err se.csv"));
     assert!(message.contains("own column"), "{message}");
-    let message = refused(here, &format!("form-factors repair f.npz {scene} -o x.npz --save-std-err y.npz"));
+    let message = refused(here, &format!("form-factors repair f.mtx {scene} -o x.npz --save-std-err y.npz"));
     assert!(message.contains("--std-err"), "{message}");
     assert!(!here.join("x.npz").exists() && !here.join("y.npz").exists());
     refused(here, &format!("form-factors repair f.npz {scene} -o x.txt"));

@@ -22,7 +22,7 @@ fn record(folder: &Path) -> Value {
 
 fn workshop() -> tempfile::TempDir {
     let place = tempfile::tempdir().expect("a folder");
-    ok(place.path(), "reference builtin:cornell-box-coarse -o ref --rays 4096 --seed 5");
+    ok(place.path(), "reference builtin:cornell-box-coarse -o ref --rays 4096 --seed 5 --estimator rays");
     ok(place.path(), "solve builtin:cornell-box-coarse --method hemicube:resolution=20 -o h.csv");
     place
 }

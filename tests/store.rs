@@ -58,7 +58,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-const BASE: &str = "reference builtin:cube-one-emitter -o ref";
+const BASE: &str = "reference builtin:cube-one-emitter --estimator rays -o ref";
 
 #[test]
 fn a_reference_that_suffices_is_not_computed_again() {

@@ -53,7 +53,7 @@ fn combined_surfaces_are_one_row_as_view3d_has_it() {
     let room = file("l-room.vs3");
     let stage = stage(&room);
     assert_eq!((stage.patch_count(), stage.surfaces.len(), stage.enclosure), (12, 8, Some(true)));
-    let json = json(place.path(), &format!("form-factors {room} -o room.vf --rays 65536"));
+    let json = json(place.path(), &format!("form-factors {room} -o room.vf --rays 65536 --estimator rays"));
     assert_eq!(json["patches"], 12);
     let text = std::fs::read_to_string(place.path().join("room.vf")).expect("written");
     let header = text.lines().next().expect("a header");
@@ -93,8 +93,8 @@ fn what_only_blocks_is_black_and_left_out_of_results() {
     assert_eq!(stage.patch_count(), 4, "two squares, and both sides of the plate");
     let reflects: Vec<f64> = (0..4).map(|i| stage.reflectance(i)[0]).collect();
     assert_eq!(reflects, [0.5, 0.0, 0.0, 0.0]);
-    ok(place.path(), &format!("form-factors {plates} -o all.csv --rays 65536"));
-    ok(place.path(), &format!("form-factors {plates} -o two.vf --rays 65536"));
+    ok(place.path(), &format!("form-factors {plates} -o all.csv --rays 65536 --estimator rays"));
+    ok(place.path(), &format!("form-factors {plates} -o two.vf --rays 65536 --estimator rays"));
     let all = read_form_factors(&place.path().join("all.csv"), 4).expect("read");
     let two = read_form_factors_of(&place.path().join("two.vf"), &stage).expect("read");
     // References/truth, obs-view3d-square; the plate's backs by hand: what is missing of the open pair.
@@ -120,7 +120,10 @@ fn subsurfaces_and_null_surfaces_are_cut_out_of_their_bases() {
     assert_eq!(areas, [0.75, 1.0, 1.0, 1.0, 0.75, 1.0, 0.25]);
     assert!(stage.facets.iter().all(|f| f.twins.is_empty() && area(&f.vertices) > 0.0));
     let place = tempfile::tempdir().expect("a folder");
-    ok(place.path(), &format!("form-factors {} -o f.csv --format csv:by=surface --rays 65536", file("window.vs3")));
+    ok(
+        place.path(),
+        &format!("form-factors {} -o f.csv --format csv:by=surface --rays 65536 --estimator rays", file("window.vs3")),
+    );
     let f = read_form_factors(&place.path().join("f.csv"), 7).expect("read");
     // West sees the whole east wall as one unit square would; window and rest share it.
     let (whole, se) = (f.get(1, 4) + f.get(1, 6), f.std_err_of(1, 4).unwrap() + f.std_err_of(1, 6).unwrap());
@@ -136,7 +139,7 @@ fn stored_view_factors_solve_to_the_same_bytes() {
     let here = place.path();
     let shade = "builtin:opposed-squares";
     for name in ["f.vf --format view3d:by=patch", "f.npz", "f.csv"] {
-        ok(here, &format!("form-factors {shade} -o {name} --rays 1024"));
+        ok(here, &format!("form-factors {shade} -o {name} --rays 1024 --estimator rays"));
     }
     for name in ["vf", "npz", "csv"] {
         ok(here, &format!("solve {shade} --method gather --form-factors f.{name} -o from-{name}.csv"));
@@ -149,7 +152,13 @@ fn stored_view_factors_solve_to_the_same_bytes() {
     assert_eq!(read("f.csv"), read("f.npz"));
     assert!(read("f.vf").std_err.is_some());
     // The store of a solver can be read again, whatever the level of View3D's rows.
-    ok(here, &format!("solve {} --method gather:rays=1024 -o a.csv --save-form-factors room.vf", file("l-room.vs3")));
+    ok(
+        here,
+        &format!(
+            "solve {} --method gather:rays=1024,estimator=rays -o a.csv --save-form-factors room.vf",
+            file("l-room.vs3")
+        ),
+    );
     let room = stage(&file("l-room.vs3"));
     let kept = read_form_factors_of(&here.join("room.vf"), &room).expect("read");
     assert!((0..12).all(|i| (kept.row_sum(i) - 1.0).abs() < 1e-12) && kept.n == 12);
@@ -161,8 +170,14 @@ fn stored_view_factors_solve_to_the_same_bytes() {
 fn energyplus_gets_every_pair_by_name() {
     let place = tempfile::tempdir().expect("a folder");
     let here = place.path();
-    ok(here, &format!("form-factors {} -o room.idf --format energyplus:zone=Zone-1 --rays 1024", file("l-room.vs3")));
-    ok(here, &format!("form-factors {} -o room.vf --rays 1024", file("l-room.vs3")));
+    ok(
+        here,
+        &format!(
+            "form-factors {} -o room.idf --format energyplus:zone=Zone-1 --rays 1024 --estimator rays",
+            file("l-room.vs3")
+        ),
+    );
+    ok(here, &format!("form-factors {} -o room.vf --rays 1024 --estimator rays", file("l-room.vs3")));
     let text = std::fs::read_to_string(here.join("room.idf")).expect("written");
     let code: String = text.lines().map(|l| l.split('!').next().unwrap_or("").trim()).collect();
     let object = code.strip_suffix(';').expect("one object");
@@ -176,7 +191,10 @@ fn energyplus_gets_every_pair_by_name() {
         assert_eq!(triple[2].parse::<f64>().expect("a number"), f.get(k / 8, k % 8), "{triple:?}");
     }
     assert!(text.contains("!- std_err ") && text.contains("! floor: 5.0 m2"), "{text}");
-    let e = refused(here, &format!("form-factors {} -o f.npz --std-err e.idf --rays 1024", file("l-room.vs3")));
+    let e = refused(
+        here,
+        &format!("form-factors {} -o f.npz --std-err e.idf --rays 1024 --estimator rays", file("l-room.vs3")),
+    );
     assert!(e.contains("e.idf") && !here.join("f.npz").exists(), "{e}");
 }
 
@@ -272,7 +290,7 @@ fn view3d_and_we_agree_on_its_own_examples() {
         let output = there.join(format!("outputs-view3d4/{name}.eps1e-6.out.txt"));
         let theirs = lines_of(&std::fs::read_to_string(output).expect("there"));
         let path = there.join(format!("{name}.vs3")).display().to_string();
-        ok(place.path(), &format!("form-factors {path} -o f.vf --rays 65536"));
+        ok(place.path(), &format!("form-factors {path} -o f.vf --rays 65536 --estimator rays"));
         let n = theirs[0].len();
         let ours = read_form_factors(&place.path().join("f.vf"), n).expect("read");
         for (i, row) in theirs[1..=n].iter().enumerate() {

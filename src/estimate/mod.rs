@@ -23,7 +23,7 @@ pub use checkpoint::{Block, Checkpoint, FinishedRow, NoCheckpoint};
 pub use counts::{Entry, HitCounts};
 pub use direct::{DirectLight, Lit, direct_light, lit_elements, lit_patches};
 pub use emitter::{Emitter, element_emitters, patch_emitters};
-pub use pairs::{Coverage, PairFactors, PairPlan, PairTally, pair_form_factors};
+pub use pairs::{Coverage, Left, PairFactors, PairPlan, PairTally, pair_form_factors};
 pub use paths::{Gathering, PathGatherer, PathSums};
 pub use plan::{Estimator, Plan, Reached};
 pub use receivers::irradiance;

@@ -2,8 +2,11 @@
 //! can be seen (proved), the exactly computed shadow of the bodies between elsewhere.
 
 mod congruent;
+mod left;
 mod sides;
 mod sort;
+
+pub use left::Left;
 
 use crate::formfactor::{Effort, Hidden, hidden_exchange};
 use crate::math::Polytope;
@@ -92,8 +95,8 @@ pub struct PairTally {
 pub struct PairFactors {
     /// The matrix of the settled pairs; the standard errors are the estimated bounds of the numerical error.
     pub form_factors: FormFactors,
-    /// Pairs left to rays: per row the columns, ascending. All others are settled, also where no entry is stored.
-    pub left: Vec<Vec<u32>>,
+    /// Pairs left to rays. All others are settled, also where no entry is stored.
+    pub left: Left,
     /// How.
     pub tally: PairTally,
     /// After each wave: points of visibility evaluated, and the relative error reached.
@@ -118,7 +121,7 @@ struct Settled {
 /// Computes the form factors of the pairs of patches of a stage. `progress` is told how many patches are done.
 pub fn pair_form_factors(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64) + Sync)) -> PairFactors {
     let begin = Instant::now();
-    let Sorted { bodies, pairs, left, unseen } = sort(stage, plan, progress);
+    let Sorted { bodies, pairs, left, covered, uncovered, unseen } = sort(stage, plan, progress);
     let smaller = |p: &Pair| stage.patches[p.from as usize].area.min(stage.patches[p.to as usize].area);
     let begun = |pair: Pair| {
         let error = CLOSED_RELATIVE * pair.open + CLOSED_ABSOLUTE * smaller(&pair);
@@ -127,7 +130,7 @@ pub fn pair_form_factors(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64)
         Settled { pair, hidden: Hidden::default(), error }
     };
     let mut settled: Vec<Settled> = pairs.into_par_iter().map(begun).collect();
-    let mut tally = PairTally { unseen, left: left.len() as u64, ..PairTally::default() };
+    let mut tally = PairTally { unseen, left: left.len() as u64 + uncovered, ..PairTally::default() };
     tally.partial = settled.iter().filter(|s| !s.pair.between.is_empty()).count() as u64;
     tally.visible = settled.len() as u64 - tally.partial;
 
@@ -151,8 +154,8 @@ pub fn pair_form_factors(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64)
         }
         tolerance *= STEP;
     }
-    let (form_factors, left) = assembled(stage, &settled, &left);
-    PairFactors { form_factors, left, tally, waves }
+    let left = Left::new(stage.patch_count(), &left, covered);
+    PairFactors { form_factors: assembled(stage, &settled), left, tally, waves }
 }
 
 /// Brings every pair to the tolerance (an error of a form factor) or to its most points. Returns the points evaluated.
@@ -180,8 +183,12 @@ fn wave(stage: &Stage, plan: &PairPlan, bodies: &[Polytope], settled: &mut [Sett
             }
         }
         let rounding = CLOSED_RELATIVE * s.pair.open + CLOSED_ABSOLUTE * p.area.min(q.area);
-        s.hidden = hidden;
-        s.error = hidden.error + rounding;
+        // A run that ended for want of points may know less than the one before.
+        if hidden.error + rounding < s.error {
+            (s.hidden, s.error) = (hidden, hidden.error + rounding);
+        } else {
+            s.hidden.points = plan.points_per_pair;
+        }
         hidden.points as u64
     };
     settled.par_iter_mut().map(refine).sum()
@@ -205,8 +212,8 @@ fn relative_error(stage: &Stage, settled: &[Settled]) -> f64 {
     if signal == 0.0 { 0.0 } else { (noise / signal).sqrt() }
 }
 
-/// Both directions of every exchange, in rows, and what is left to rays.
-fn assembled(stage: &Stage, settled: &[Settled], left: &[(u32, u32)]) -> (FormFactors, Vec<Vec<u32>>) {
+/// Both directions of every exchange, in rows.
+fn assembled(stage: &Stage, settled: &[Settled]) -> FormFactors {
     let mut rows: Vec<Vec<(u32, f64, f64)>> = vec![Vec::new(); stage.patch_count()];
     for s in settled {
         let exchange = s.exchange();
@@ -220,12 +227,6 @@ fn assembled(stage: &Stage, settled: &[Settled], left: &[(u32, u32)]) -> (FormFa
             rows[i as usize].push((j, exchange / area, s.error / area));
         }
     }
-    let mut columns: Vec<Vec<u32>> = vec![Vec::new(); stage.patch_count()];
-    for (i, j) in left {
-        columns[*i as usize].push(*j);
-        columns[*j as usize].push(*i);
-    }
     rows.par_iter_mut().for_each(|row| row.sort_unstable_by_key(|e| e.0));
-    columns.par_iter_mut().for_each(|row| row.sort_unstable());
-    (FormFactors::from_rows(rows), columns)
+    FormFactors::from_rows(rows)
 }

@@ -31,8 +31,12 @@ pub(super) struct Sorted {
     pub bodies: Vec<Polytope>,
     /// Pairs that exchange something with nothing between.
     pub pairs: Vec<Pair>,
-    /// Pairs left to rays.
+    /// Pairs left to rays one by one.
     pub left: Vec<(u32, u32)>,
+    /// Patches on emitting sides, where only their pairs are covered.
+    pub covered: Option<Vec<bool>>,
+    /// Number of pairs that are not covered.
+    pub uncovered: u64,
     /// Pairs proved not to see each other.
     pub unseen: u64,
 }
@@ -50,10 +54,13 @@ pub(super) fn sort(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64) + Syn
         found
     };
     let found: Vec<Vec<Found>> = (0..scene.sides.len()).into_par_iter().map(of_side).collect();
-    let mut sorted = Sorted { bodies: scene.bodies, pairs: Vec::new(), left: Vec::new(), unseen: 0 };
+    let covered = (plan.coverage == Coverage::Emitters).then(|| scene.covered());
+    let (bodies, pairs, left) = (scene.bodies, Vec::new(), Vec::new());
+    let mut sorted = Sorted { bodies, pairs, left, covered, uncovered: 0, unseen: 0 };
     for part in found.into_iter().flatten() {
         sorted.pairs.extend(part.pairs);
         sorted.left.extend(part.left);
+        sorted.uncovered += part.uncovered;
         sorted.unseen += part.unseen;
     }
     sorted
@@ -74,14 +81,14 @@ struct Scene<'a> {
 struct Found {
     pairs: Vec<Pair>,
     left: Vec<(u32, u32)>,
+    uncovered: u64,
     unseen: u64,
 }
 
 /// A later side, and what stands before it.
 struct Ahead {
     side: usize,
-    /// `None`: left to rays.
-    between: Option<Between>,
+    between: Between,
     alike: Option<Congruent>,
 }
 
@@ -89,21 +96,29 @@ impl Scene<'_> {
     /// The pairs of one side with all later sides, patch by patch.
     fn side(&self, s: usize) -> Vec<Found> {
         let side = &self.sides[s];
-        let (mut unseen, mut ahead) = (0, Vec::new());
+        let (mut unseen, mut uncovered, mut ahead) = (0, 0, Vec::new());
         for t in s + 1..self.sides.len() {
             let other = &self.sides[t];
+            let pairs = (side.patches.len() * other.patches.len()) as u64;
             if self.plan.coverage == Coverage::Emitters && !side.emits && !other.emits {
-                ahead.push(Ahead { side: t, between: None, alike: None });
+                uncovered += pairs;
                 continue;
             }
             match self.between(&side.polygon, &other.polygon, None) {
-                None | Some(Between::Wall) => unseen += (side.patches.len() * other.patches.len()) as u64,
-                some => ahead.push(Ahead { side: t, between: some, alike: Congruent::of(side, other) }),
+                None | Some(Between::Wall) => unseen += pairs,
+                Some(between) => ahead.push(Ahead { side: t, between, alike: Congruent::of(side, other) }),
             }
         }
         let mut found: Vec<Found> = side.patches.par_iter().map(|i| self.patch(*i, s, &ahead)).collect();
-        found.push(Found { unseen, ..Found::default() });
+        found.push(Found { unseen, uncovered, ..Found::default() });
         found
+    }
+
+    /// The patches on emitting sides.
+    fn covered(&self) -> Vec<bool> {
+        let mut covered = vec![false; self.stage.patch_count()];
+        self.sides.iter().filter(|s| s.emits).flat_map(|s| &s.patches).for_each(|i| covered[*i as usize] = true);
+        covered
     }
 
     /// What stands between two polygons; `None` if neither lies before the other. `known`: no other body does.
@@ -125,11 +140,7 @@ impl Scene<'_> {
         let mut found = Found::default();
         for a in ahead {
             let other = &self.sides[a.side];
-            let Some(whole) = &a.between else {
-                found.left.extend(other.patches.iter().map(|j| (i, *j)));
-                continue;
-            };
-            let narrowed = match whole {
+            let narrowed = match &a.between {
                 Between::Some(list) if self.sides[s].patches.len() > 1 && other.patches.len() > 1 => {
                     self.between(corners, &other.polygon, Some(list))
                 }

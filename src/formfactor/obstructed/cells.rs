@@ -69,7 +69,8 @@ pub(super) fn integrate(
         let mut next = Vec::with_capacity(cells.len());
         let mut stuck = true;
         for c in cells {
-            if c.error <= share || (c.order + 1 == LADDER.len() && c.depth == DEEPEST) {
+            // Out of points, the rest stays as good as it is.
+            if points >= most || c.error <= share || (c.order + 1 == LADDER.len() && c.depth == DEEPEST) {
                 next.push(c);
                 continue;
             }
@@ -77,7 +78,11 @@ pub(super) fn integrate(
             if c.order + 1 < LADDER.len() && c.is_worth_raising() {
                 next.push(raised(c, memory, &mut points, f));
             } else {
-                quarters(&c, &mut |corners| next.push(begun(corners, c.depth + 1, &mut points, f)));
+                quarters(&c, &mut |corners| {
+                    let part = begun(corners, c.depth + 1, &mut points, f);
+                    // An order at once, so that what is stated falls with every division.
+                    next.push(raised(part, 0.0, &mut points, f));
+                });
             }
         }
         cells = next;
