@@ -96,7 +96,7 @@ fn one_occluder_lost() {
         }
         let mut one = RayBatch::zeroed(1);
         one.set(0, rays.origin_of(k), rays.direction_of(k));
-        one.from = rays.from.min(NO_FACET);
+        one.from = rays.from;
         let mut answer = [NO_FACET];
         if rays.from < 6 || rays.from == NO_FACET {
             through.intersect(&one, &mut answer);

@@ -66,10 +66,10 @@ fn combined_surfaces_are_one_row_as_view3d_has_it() {
     assert_eq!(lines.len(), 10);
     let f = read_form_factors(&place.path().join("room.vf"), 8).expect("it comes back");
     // Exact values of the room (references/truth, obs-Lroom-1-5 and 1-6), and zeros by geometry.
-    agrees(&f, 0, 4, 0.032890247563087870295);
-    agrees(&f, 1, 5, 0.098670742689263610885);
-    agrees(&f, 0, 5, 0.18235590366859575187);
-    agrees(&f, 5, 0, 0.18235590366859575187);
+    agrees(&f, 0, 4, 0.032_890_247_563_087_87);
+    agrees(&f, 1, 5, 0.098_670_742_689_263_61);
+    agrees(&f, 0, 5, 0.182_355_903_668_595_75);
+    agrees(&f, 5, 0, 0.182_355_903_668_595_75);
     assert_eq!((f.get(2, 3), f.get(1, 4), f.get(6, 6)), (0.0, 0.0, 0.0));
     (0..8).for_each(|i| assert!((f.row_sum(i) - 1.0).abs() < 1e-12, "row {i}"));
 }
@@ -98,8 +98,8 @@ fn what_only_blocks_is_black_and_left_out_of_results() {
     let all = read_form_factors(&place.path().join("all.csv"), 4).expect("read");
     let two = read_form_factors_of(&place.path().join("two.vf"), &stage).expect("read");
     // References/truth, obs-view3d-square; the plate's backs by hand: what is missing of the open pair.
-    agrees(&all, 0, 1, 0.149868671773790537281);
-    agrees(&all, 1, 0, 0.149868671773790537281);
+    agrees(&all, 0, 1, 0.149_868_671_773_790_54);
+    agrees(&all, 1, 0, 0.149_868_671_773_790_54);
     assert!(all.get(1, 2) > 0.1 && all.get(0, 3) > 0.1 && all.get(0, 2) == 0.0);
     assert_eq!((two.get(0, 1), two.get(1, 0)), (all.get(0, 1), all.get(1, 0)));
     assert_eq!((two.n, two.get(1, 2)), (4, 0.0));

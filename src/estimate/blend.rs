@@ -4,7 +4,7 @@ use super::{Entry, HitCounts, PairFactors};
 use crate::solution::{FormFactorBounds, FormFactors};
 use rayon::prelude::*;
 
-/// Errors of settled pairs are estimates, in tests exceeded some 25-fold at most.
+/// Of stated errors, in bounds. Errors of settled pairs are estimates, in tests exceeded some 25-fold at most.
 const MARGIN: f64 = 50.0;
 
 /// Settled pairs beside the ray counts of the others.
@@ -59,7 +59,7 @@ impl<'a> Blend<'a> {
     }
 
     /// Bounds of all form factors that hold together at this confidence: of hit counts their intervals, of settled
-    /// pairs [`MARGIN`] times the stated error. `closed`: rows sum to one.
+    /// pairs 50 times the stated error. `closed`: rows sum to one.
     pub fn bounds(&self, confidence: f64, closed: bool) -> FormFactorBounds {
         let by_rays = self.counts.bounds(confidence, closed);
         let Some(pairs) = self.settled else { return by_rays };

@@ -49,7 +49,7 @@ impl View {
         let slack = SLACK * extent;
         let cut = |b: &&Polytope| {
             let front = b.in_front(&near, slack)?.in_front(&far, slack)?;
-            let plane = |p: &Plane| Plane { normal: into(p.normal), offset: p.height(centre) * -1.0 };
+            let plane = |p: &Plane| Plane { normal: into(p.normal), offset: -p.height(centre) };
             Some(Body {
                 vertices: front.vertices().iter().map(|v| place(*v)).collect(),
                 planes: front.planes().iter().map(plane).collect(),
