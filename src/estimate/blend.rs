@@ -39,8 +39,11 @@ impl<'a> Blend<'a> {
 
     /// Mean form factors with standard errors.
     pub fn form_factors(&self) -> FormFactors {
+        let Some(settled) = self.settled.map(|s| &s.form_factors) else { return self.counts.form_factors() };
+        if self.counts.rows.iter().all(Vec::is_empty) {
+            return settled.clone();
+        }
         let by_rays = self.counts.form_factors();
-        let Some(settled) = self.settled.map(|s| &s.form_factors) else { return by_rays };
         let row = |i: usize| {
             let entries = |f: &FormFactors| -> Vec<(u32, f64, f64)> {
                 let span = f.row_starts[i]..f.row_starts[i + 1];
@@ -88,7 +91,11 @@ impl<'a> Blend<'a> {
         if self.settled.is_none() {
             return self.counts.relative_error();
         }
-        let f = self.form_factors();
+        let all = self.counts.rows.iter().all(Vec::is_empty);
+        let f = match self.settled {
+            Some(s) if all => std::borrow::Cow::Borrowed(&s.form_factors),
+            _ => std::borrow::Cow::Owned(self.form_factors()),
+        };
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let signal = norm(&f.values);
         if signal == 0.0 { 0.0 } else { norm(f.std_err.as_deref().unwrap_or_default()) / signal }

@@ -21,6 +21,8 @@ impl Members {
         let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
         let options = SimpleFileOptions::default()
             .compression_method(zip::CompressionMethod::Deflated)
+            // Digits hardly shrink: more effort costs most of the time and saves a few per cent.
+            .compression_level(Some(1))
             .last_modified_time(zip::DateTime::default())
             .large_file(true);
         for (name, bytes) in self.0 {

@@ -27,7 +27,7 @@ const METHOD: &str = "hemicube:resolution=100";
 /// Limit on eq. 7 that the demo puts to the hemi-cube.
 const MAX_RMS: f64 = 0.02;
 /// Rays per patch of its reference.
-const RAYS: u64 = 65_536;
+const RAYS: u64 = 16_384;
 
 pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failure> {
     let begin = Instant::now();
