@@ -141,6 +141,20 @@ fn tilted_plates_agree_with_rays() {
     assert!(tested > 500 && p > 1e-6, "{tested} exchanges, p = {p:e}");
 }
 
+/// A block that stands halfway in the floor: what of the floor lies within it sees nothing, and is seen by nothing.
+#[test]
+fn what_lies_within_a_solid_sees_nothing() {
+    let mut p = room(1);
+    block(&mut p, [0.3, 0.3, -0.2], [0.7, 0.6, 0.2], 1, 0.0);
+    let stage = p.stage();
+    let f = settled(&stage, 1e-9).form_factors;
+    // The floor's face 0 is one patch; of its area 0.4 x 0.3 lies within.
+    let sum = f.row_sum(0);
+    assert!((sum - (1.0 - 0.12)).abs() < 1e-8, "{sum}");
+    // The ceiling sees the room as if the floor had a hole with a block in it: nothing is lost.
+    assert!((f.row_sum(1) - 1.0).abs() < 1e-8, "{}", f.row_sum(1));
+}
+
 /// Looser errors hold against a tight run: all but 2 in a hundred within what is stated, none 40 times beyond.
 #[test]
 fn stated_errors_hold() {

@@ -9,7 +9,7 @@ use crate::solution::{Check, FormFactors};
 use crate::stats::{sidak, t_p_value};
 
 /// Rays find facets in single precision: flows may differ by this share without anything being wrong.
-const SINGLE_PRECISION: f64 = 1e-6;
+const SINGLE_PRECISION: f64 = 1e-5;
 
 /// Flows below so many of the smallest steps are too grainy for a t test.
 const LEAST_STEPS: f64 = 200.0;

@@ -2,7 +2,7 @@
 //! curves where edges of two bodies and of the target meet in one ray.
 
 use super::view::{Body, View};
-use crate::math::{DVec2, DVec3};
+use crate::math::{DVec2, DVec3, Plane};
 
 /// A line `normal . p = offset` of the domain's plane.
 #[derive(Debug, Clone, Copy)]
@@ -75,16 +75,24 @@ impl Events<'_> {
                 }
             }
         }
+        let enters = self.may_enter(body);
         for plane in &body.planes {
             let (mut low, mut high) = (0.0f64, 0.0f64);
             for q in &self.target {
                 low = low.min(plane.height(*q));
                 high = high.max(plane.height(*q));
             }
-            if low < -ROUNDING * self.view.extent && high > ROUNDING * self.view.extent {
+            if enters || (low < -ROUNDING * self.view.extent && high > ROUNDING * self.view.extent) {
                 self.plane(plane.normal, plane.normal * plane.offset);
             }
         }
+    }
+
+    /// False if a face has the whole domain before it: no point of it lies within the body.
+    fn may_enter(&self, body: &Body) -> bool {
+        let view = self.view;
+        let before = |p: &Plane| view.domain.iter().all(|c| p.height(view.point(*c)) >= -ROUNDING * view.extent);
+        !body.is_flat && !body.planes.iter().any(before)
     }
 
     /// False if, from everywhere on the shadows that corner `v` gets from the edge `q`-`next`, all faces around the

@@ -130,7 +130,8 @@ impl Body {
             }
         }
         if seen == 0 {
-            return Shadow::Misses;
+            // In the plane of a plate, or within a solid, whose walls are black from inside.
+            return if self.is_flat { Shadow::Misses } else { Shadow::Hides };
         }
         let inwards = self.centre - x;
         for e in &self.edges {

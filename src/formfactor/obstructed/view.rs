@@ -30,6 +30,8 @@ pub(super) struct Body {
     pub edges: Vec<PolytopeEdge>,
     /// A point inside.
     pub centre: DVec3,
+    /// True for a polygon without thickness.
+    pub is_flat: bool,
 }
 
 /// Share of the extent below which heights are rounding.
@@ -55,6 +57,7 @@ impl View {
                 planes: front.planes().iter().map(plane).collect(),
                 edges: front.edges().to_vec(),
                 centre: place(front.centre()),
+                is_flat: front.is_flat(),
             })
         };
         let f1 = longest_edge(domain);
