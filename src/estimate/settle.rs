@@ -8,8 +8,8 @@ use std::time::Duration;
 /// Patches up to which all pairs are settled: their number grows with the square.
 const MOST_PATCHES: usize = 3_000;
 
-/// Sides times sides times facets up to which all pairs are sorted: some minutes.
-const MOST_SORTING: f64 = 1e10;
+/// Sides times sides times facets up to which all pairs are sorted: some ten seconds.
+const MOST_SORTING: f64 = 1e9;
 
 /// Pairs with an emitter up to which those are settled.
 const MOST_EMITTER_PAIRS: f64 = 1e7;

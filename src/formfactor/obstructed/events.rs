@@ -99,6 +99,10 @@ impl Events<'_> {
     /// corner are seen or none is.
     fn may_be_outline(&self, body: &Body, v: u32, q: DVec3, next: DVec3) -> bool {
         let w = body.vertices[v as usize];
+        let height = |p: DVec3| self.view.above_domain(p);
+        if height(w) >= height(q).min(height(next)) {
+            return true;
+        }
         let ends = [q, next].map(|q| self.image(q, w).map(|x| self.view.point(x)));
         let [Some(a), Some(b)] = ends else { return true };
         let (mut seen, mut unseen) = (false, false);
