@@ -52,7 +52,7 @@ fn every_pair() {
     }
     println!("{agreed} of {pairs} pairs agree to 1e-10, worst {worst:.1e}");
     // Tilted plates whose edges cross in the view of an edge: curves where the integrand bends, found by refinement only.
-    assert!(pairs >= 70 && agreed >= 60 && worst < 1e-6, "{agreed} of {pairs}, worst {worst:e}");
+    assert!(pairs >= 70 && agreed >= 66 && worst < 1e-7, "{agreed} of {pairs}, worst {worst:e}");
 }
 
 /// Plates that are not wholly behind either polygon or beyond their hull's box.
@@ -83,7 +83,7 @@ fn whole_rows() {
                 list(&row["values"]).iter().enumerate().map(|(j, v)| (f.form_factors.get(i, j) - number(v)).abs());
             let worst = errors.fold(0.0, f64::max);
             println!("{} row {i}: worst {worst:.1e}; {:?}", scene["scene"], f.tally);
-            assert!(worst < 1e-7, "{} row {i}: {worst}", scene["scene"]);
+            assert!(worst < 1e-8, "{} row {i}: {worst}", scene["scene"]);
             rows += 1;
         }
     }

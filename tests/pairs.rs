@@ -155,7 +155,7 @@ fn what_lies_within_a_solid_sees_nothing() {
     assert!((f.row_sum(1) - 1.0).abs() < 1e-8, "{}", f.row_sum(1));
 }
 
-/// Looser errors hold against a tight run: all but 2 in a hundred within what is stated, none 40 times beyond.
+/// Looser errors hold against a tight run: all but 2 in a thousand within what is stated, none twice beyond.
 #[test]
 fn stated_errors_hold() {
     let mut p = room(3);
@@ -175,9 +175,12 @@ fn stated_errors_hold() {
                 worst = worst.max(error / (stated + 1e-11));
             }
         }
-        println!("target {target:e}: reached {:.1e}, {beyond} of {told} beyond", loose.relative_error());
+        println!(
+            "target {target:e}: reached {:.1e}, {beyond} of {told} beyond, worst {worst:.1}",
+            loose.relative_error()
+        );
         assert!(loose.relative_error() <= target);
-        assert!(beyond * 50 <= told && worst < 40.0, "{beyond} of {told} beyond, worst {worst}");
+        assert!(beyond * 500 <= told && worst < 2.0, "{beyond} of {told} beyond, worst {worst}");
     }
 }
 

@@ -9,13 +9,10 @@ use crate::solution::{Check, FormFactors};
 use crate::stats::{sidak, t_p_value};
 
 /// Rays find facets in single precision: flows may differ by this share without anything being wrong.
-const SINGLE_PRECISION: f64 = 1e-5;
+const SINGLE_PRECISION: f64 = 1e-6;
 
 /// Flows below so many of the smallest steps are too grainy for a t test.
 const LEAST_STEPS: f64 = 200.0;
-
-/// Times the stated errors of a row that its closure may be off by.
-const TIMES: f64 = 5.0;
 
 /// Gaps of an enclosure that other checks let pass.
 const GAP: f64 = 1e-6;
@@ -101,8 +98,8 @@ fn spread(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (mean, (squares / (r * (r - 1.0))).sqrt())
 }
 
-/// In a closed scene a row without rays sums to one within a few times the sum of its errors, which are estimates:
-/// nothing makes it do so but being right.
+/// In a closed scene a row without rays sums to one within the sum of its errors: nothing makes it do so but being
+/// right.
 fn closure(stage: &Stage, pairs: &PairFactors, matrix: &FormFactors, enclosure: bool) -> Check {
     let name = "closure";
     if !enclosure {
@@ -118,7 +115,7 @@ fn closure(stage: &Stage, pairs: &PairFactors, matrix: &FormFactors, enclosure: 
     for i in &rows {
         let span = matrix.row_starts[*i]..matrix.row_starts[i + 1];
         let defect = (matrix.row_sum(*i) - 1.0).abs();
-        let beyond = defect - TIMES * compensated_sum(errors[span].iter().copied());
+        let beyond = defect - compensated_sum(errors[span].iter().copied());
         largest = largest.max(defect);
         if beyond > excess {
             (excess, worst) = (beyond, *i);
