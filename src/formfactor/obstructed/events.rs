@@ -77,12 +77,14 @@ impl Events<'_> {
         }
         let enters = self.may_enter(body);
         for plane in &body.planes {
-            let (mut low, mut high) = (0.0f64, 0.0f64);
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for q in &self.target {
                 low = low.min(plane.height(*q));
                 high = high.max(plane.height(*q));
             }
-            if enters || (low < -ROUNDING * self.view.extent && high > ROUNDING * self.view.extent) {
+            // Also where the plane only touches the target: a board on a wall begins to hide what stands on its edge.
+            let reach = ROUNDING * self.view.extent;
+            if enters || (low <= reach && high >= -reach) {
                 self.plane(plane.normal, plane.normal * plane.offset);
             }
         }
