@@ -4,8 +4,10 @@ mod bounds;
 mod form_factors;
 mod provenance;
 mod radiosity;
+mod series;
 
 pub use bounds::FormFactorBounds;
 pub use form_factors::FormFactors;
 pub use provenance::{Check, Provenance, SelfCheck, TruthLevel};
 pub use radiosity::{Radiosity, Replicates};
+pub use series::{Series, Snapshot};
