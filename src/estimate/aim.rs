@@ -6,14 +6,19 @@ use crate::raycast::RayBatch;
 use crate::sampling::{Net, PointMap, Stream, fold};
 
 /// Rays of one batch: enough to feed packets, small enough for the first-level cache.
-pub(super) const BATCH: usize = 256;
+pub const BATCH: usize = 256;
 
 /// Makes the rays of an emitter from samples `first ..` of a net.
-pub(super) fn fill(rays: &mut RayBatch, net: &Net, first: usize, emitter: &Emitter, shift: Stream) {
-    let frame = emitter.frame.turned(shift.unit(0) * std::f64::consts::TAU);
+pub fn fill(rays: &mut RayBatch, net: &Net, first: usize, emitter: &Emitter, shift: Stream) {
+    let frame = turned_frame(emitter, shift);
     rays.from = emitter.facet;
     make_positions(rays, net, first, &emitter.map, [(shift.at(1) >> 33) as i32, (shift.at(2) >> 33) as i32]);
     make_directions(rays, net, first, &frame);
+}
+
+/// The frame in which the net's directions are taken: turned by an angle of the emitter's own.
+pub fn turned_frame(emitter: &Emitter, shift: Stream) -> Frame {
+    emitter.frame.turned(shift.unit(0) * std::f64::consts::TAU)
 }
 
 /// Middle of a 31-bit cell.

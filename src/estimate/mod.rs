@@ -5,6 +5,7 @@ mod aim;
 mod blend;
 mod bounds;
 mod checkpoint;
+mod closed;
 mod counts;
 mod direct;
 mod emitter;
@@ -18,8 +19,10 @@ mod rows;
 mod settle;
 mod shadow;
 
+pub use aim::{BATCH, fill, turned_frame};
 pub use blend::Blend;
 pub use checkpoint::{Block, Checkpoint, FinishedRow, NoCheckpoint};
+pub use closed::is_closed;
 pub use counts::{Entry, HitCounts};
 pub use direct::{DirectLight, Lit, direct_light, lit_elements, lit_patches};
 pub use emitter::{Emitter, element_emitters, patch_emitters};

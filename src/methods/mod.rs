@@ -4,6 +4,7 @@ pub mod gather;
 pub mod hemicube;
 mod info;
 mod method;
+pub mod shooting;
 
 pub use info::{MethodInfo, PatchVectors, RowSums};
 pub use method::{Method, MethodError};

@@ -109,8 +109,12 @@ impl Locator {
 
 impl Cells {
     fn new(facet: &Facet) -> Self {
-        let v = &facet.vertices;
-        match facet.grid {
+        Self::divide(&facet.vertices, facet.grid)
+    }
+
+    /// The cells of a polygon.
+    fn divide(v: &[DVec3], grid: Grid) -> Self {
+        match grid {
             Grid::Quad { na: 1, nb: 1 } | Grid::Triangle { n: 1 } | Grid::Whole => Self::Whole,
             Grid::Quad { na, nb } => {
                 let map = Bilinear::new([v[0], v[1], v[2], v[3]]);
@@ -141,6 +145,53 @@ impl Cells {
                 let q = p - *origin;
                 let (k, b) = triangle_cell(*n, q.dot(dual[0]), q.dot(dual[1]));
                 b * (2 * n - b) + k
+            }
+        }
+    }
+}
+
+/// The elements of all patches, ready to be asked in which one a ray lands.
+pub struct ElementLocator {
+    patches: Vec<Option<Division>>,
+    /// First element of each patch.
+    first: Vec<u32>,
+}
+
+/// A patch of more than one element.
+struct Division {
+    normal: DVec3,
+    offset: f64,
+    cells: Cells,
+}
+
+impl ElementLocator {
+    /// The elements of a stage.
+    pub fn new(stage: &Stage) -> Self {
+        let division = |p: &crate::scene::Patch| {
+            let facet = stage.facets.get(p.facet as usize).filter(|_| p.elements.len() > 1)?;
+            // Elements of a back are numbered as those of its front, whose loop runs the other way from the same corner.
+            let mut corners = p.corners.clone();
+            if p.normal.dot(facet.normal) < 0.0 {
+                corners[1..].reverse();
+            }
+            let cells = Cells::divide(&corners, facet.elements);
+            Some(Division { normal: p.normal, offset: p.normal.dot(corners[0]), cells })
+        };
+        Self {
+            patches: stage.patches.iter().map(division).collect(),
+            first: stage.patches.iter().map(|p| p.elements.start).collect(),
+        }
+    }
+
+    /// Element in which a ray lands that lands in a patch.
+    #[inline]
+    pub fn element(&self, patch: u32, origin: DVec3, direction: DVec3) -> u32 {
+        let first = self.first[patch as usize];
+        match &self.patches[patch as usize] {
+            None => first,
+            Some(d) => {
+                let t = (d.offset - d.normal.dot(origin)) / d.normal.dot(direction);
+                first + d.cells.number(origin + direction * t)
             }
         }
     }

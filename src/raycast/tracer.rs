@@ -5,7 +5,7 @@ use super::{KernelInfo, RayBatch, RayKernel};
 use crate::math::DVec3;
 use crate::scene::{NO_FACET, Stage};
 use serde::{Deserialize, Serialize};
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Deref};
 use std::sync::Arc;
 
 /// Rays counted by what became of them.
@@ -38,9 +38,26 @@ pub struct TraceScratch {
     again: RayBatch,
 }
 
+/// The stage a tracer casts in: lent, or shared with whoever keeps it.
+enum Held<'a> {
+    Lent(&'a Stage),
+    Shared(Arc<Stage>),
+}
+
+impl Deref for Held<'_> {
+    type Target = Stage;
+
+    fn deref(&self) -> &Stage {
+        match self {
+            Held::Lent(stage) => stage,
+            Held::Shared(stage) => stage,
+        }
+    }
+}
+
 /// Casts rays in a stage and says in which patch each lands.
 pub struct Tracer<'a> {
-    stage: &'a Stage,
+    stage: Held<'a>,
     kernel: Arc<dyn RayKernel>,
     /// Double-precision kernel that decides doubtful rays again.
     second: Arc<dyn RayKernel>,
@@ -53,20 +70,18 @@ pub struct Tracer<'a> {
 impl<'a> Tracer<'a> {
     /// A tracer on `kernel`. In an enclosure every escape and back hit is decided again by `second`.
     pub fn new(stage: &'a Stage, kernel: Arc<dyn RayKernel>, second: Arc<dyn RayKernel>, enclosure: bool) -> Self {
-        Self {
-            stage,
-            kernel,
-            second,
-            sides: sides(stage),
-            locators: locators(stage),
-            present: stage.patches.iter().map(|p| p.is_present()).collect(),
-            enclosure,
-        }
+        Self::on(Held::Lent(stage), kernel, second, enclosure)
+    }
+
+    fn on(stage: Held<'a>, kernel: Arc<dyn RayKernel>, second: Arc<dyn RayKernel>, enclosure: bool) -> Self {
+        let (sides, locators) = (sides(&stage), locators(&stage));
+        let present = stage.patches.iter().map(|p| p.is_present()).collect();
+        Self { stage, kernel, second, sides, locators, present, enclosure }
     }
 
     /// The stage rays are cast in.
-    pub fn stage(&self) -> &'a Stage {
-        self.stage
+    pub fn stage(&self) -> &Stage {
+        &self.stage
     }
 
     /// The kernel that finds facets.
@@ -163,5 +178,17 @@ impl<'a> Tracer<'a> {
         for (slot, k) in scratch.doubtful.iter().enumerate() {
             landings[*k as usize] = self.landing(again, slot, facets[slot]);
         }
+    }
+}
+
+impl Tracer<'static> {
+    /// A tracer that keeps its stage.
+    pub fn shared(
+        stage: Arc<Stage>,
+        kernel: Arc<dyn RayKernel>,
+        second: Arc<dyn RayKernel>,
+        enclosure: bool,
+    ) -> Self {
+        Self::on(Held::Shared(stage), kernel, second, enclosure)
     }
 }

@@ -5,7 +5,7 @@
 //! covered, the polygon it is in contact with is drawn in the same place, with its own back.
 
 use crate::math::{DVec3, area, centroid, unit_normal};
-use crate::scene::{COINCIDENCE_TOLERANCE, Patch, Stage};
+use crate::scene::{COINCIDENCE_TOLERANCE, Patch, Region, Stage};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -41,9 +41,20 @@ pub struct World {
 impl World {
     /// Gathers the polygons of a stage. Absent patches are left out.
     pub fn new(stage: &Stage) -> Self {
+        let polygons = stage.patches.iter().map(|p| (p.corners.as_slice(), &p.region));
+        Self::of(stage, polygons, stage.patches.len())
+    }
+
+    /// The same divided into elements: items are numbers of elements.
+    pub fn of_elements(stage: &Stage) -> Self {
+        let polygons = stage.elements.iter().map(|e| (e.corners.as_slice(), &e.region));
+        Self::of(stage, polygons, stage.elements.len())
+    }
+
+    fn of<'a>(stage: &Stage, polygons: impl Iterator<Item = (&'a [DVec3], &'a Region)>, count: usize) -> Self {
         let mut builder = Builder::default();
-        let standing = stage.patches.iter().enumerate().filter(|(_, p)| p.corners.len() >= 3);
-        let shapes = standing.map(|(number, patch)| builder.shape(number, patch)).collect();
+        let standing = polygons.enumerate().filter(|(_, (corners, _))| corners.len() >= 3);
+        let shapes = standing.map(|(number, (corners, region))| builder.shape(number, corners, region)).collect();
         let (lo, hi) = stage.bounds();
         Self {
             shapes,
@@ -51,7 +62,7 @@ impl World {
             vertices: builder.vertices,
             corners: builder.corners,
             loops: builder.loops,
-            patches: stage.patches.len(),
+            patches: count,
         }
     }
 
@@ -77,17 +88,17 @@ impl Default for Builder {
 }
 
 impl Builder {
-    fn shape(&mut self, number: usize, patch: &Patch) -> Shape {
-        let normal = unit_normal(&patch.corners);
-        let back = self.add_loop(&patch.corners);
-        let fronts = if patch.region.pieces.len() == 1 && patch.region.pieces[0] == patch.corners {
+    fn shape(&mut self, number: usize, corners: &[DVec3], region: &Region) -> Shape {
+        let normal = unit_normal(corners);
+        let back = self.add_loop(corners);
+        let fronts = if region.pieces.len() == 1 && region.pieces[0] == corners {
             back..back + 1
         } else {
             let first = back + 1;
-            patch.region.pieces.iter().for_each(|piece| _ = self.add_loop(piece));
+            region.pieces.iter().for_each(|piece| _ = self.add_loop(piece));
             first..self.loops.len() as u32 - 1
         };
-        Shape { patch: number as u32, normal, offset: normal.dot(patch.corners[0]), fronts, back }
+        Shape { patch: number as u32, normal, offset: normal.dot(corners[0]), fronts, back }
     }
 
     fn add_loop(&mut self, polygon: &[DVec3]) -> u32 {
@@ -135,7 +146,7 @@ fn contains(polygon: &[DVec3], normal: DVec3, p: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{NO_FACET, Region};
+    use crate::scene::NO_FACET;
 
     fn square(x0: f64, x1: f64) -> Vec<DVec3> {
         [(x0, 0.0), (x1, 0.0), (x1, 1.0), (x0, 1.0)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec()

@@ -1,0 +1,185 @@
+//! Select, drag, release: a series of changes of one object folds into one removal and one addition [GSG90, fig. 5].
+//!
+//! Selecting removes the object. While it is dragged, what its places bring is kept apart, shown, and forgotten when
+//! it is dragged on. Releasing makes the last place an edit, and what was shot towards it is kept.
+
+use super::change::Change;
+use super::field::Field;
+use super::geometry::Geometry;
+use super::importance;
+use super::version::describe;
+use super::{Shooting, ShootingError};
+use crate::scene::{Edit, Scene, Stage};
+use std::sync::Arc;
+
+/// An object taken out of the scene.
+pub(super) struct Preview {
+    pub object: String,
+    /// Where it is shown; `None` before the first drag.
+    place: Option<Place>,
+}
+
+/// One place of it.
+struct Place {
+    /// The scene with the edits that bring it there.
+    scene: Scene,
+    /// How many those are.
+    edits: usize,
+    geometry: Arc<Geometry>,
+    change: Change,
+    weight: Vec<f64>,
+    /// What it adds to what has arrived.
+    field: Field,
+    /// Power of each patch that is in `field` already, per channel and band.
+    shot: Vec<f64>,
+    /// Patches of the object that emit and have not shot.
+    lamps: Vec<usize>,
+}
+
+impl Preview {
+    /// What the place adds.
+    pub fn field(&self) -> Option<&Field> {
+        self.place.as_ref().map(|p| &p.field)
+    }
+
+    /// The scene with the object where it is shown.
+    pub fn stage(&self) -> Option<&Stage> {
+        self.place.as_ref().map(|p| &*p.geometry.stage)
+    }
+}
+
+impl Shooting {
+    /// Takes an object out of the scene to drag it: an edit that removes it, redistributed like any other.
+    ///
+    /// # Errors
+    /// As [`Shooting::apply`]: no such object, not there, another one selected.
+    pub fn select(&mut self, object: &str) -> Result<(), ShootingError> {
+        self.apply(Edit::Remove { object: object.into() })?;
+        self.preview = Some(Preview { object: object.into(), place: None });
+        Ok(())
+    }
+
+    /// Shows the selected object changed by some edits (moves, reshapings), counted from where it was selected. What the
+    /// last place had brought is erased.
+    ///
+    /// # Errors
+    /// Nothing selected; edits that the scene refuses (the object stays where it was shown last).
+    pub fn drag(&mut self, edits: &[Edit]) -> Result<(), ShootingError> {
+        let Some(preview) = &self.preview else { return Err(ShootingError::NothingSelected) };
+        let begin = std::time::Instant::now();
+        let mut scene = self.scene.clone();
+        let add = Edit::Add { object: preview.object.clone() };
+        scene.edits.splice(self.state..self.state, edits.iter().cloned().chain([add]));
+        let edits = edits.len() + 1;
+        let stage = self.checked_stage(&scene, self.state + edits)?;
+        let geometry = Arc::new(self.open_geometry(stage)?);
+        let change = Change::between(&self.newest().geometry, &geometry, 1);
+        let estimate = importance::estimate([&self.newest().geometry, &geometry], &change);
+        self.costs.rays += estimate.rays;
+        let shines = |i: &usize| change.came[*i] && geometry.stage.emission(*i).iter().any(|e| *e > 0.0);
+        let place = Place {
+            scene,
+            edits,
+            lamps: (0..change.own.len()).filter(shines).collect(),
+            geometry,
+            change,
+            weight: estimate.share,
+            field: Field::dark(&self.stage, self.field.channels),
+            shot: vec![0.0; self.shot.len()],
+        };
+        if let Some(preview) = &mut self.preview {
+            preview.place = Some(place);
+        }
+        self.costs.seconds += begin.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Puts the object down where it is shown; where it was not dragged, where it was. What was shot towards it is kept.
+    ///
+    /// # Errors
+    /// Nothing selected.
+    pub fn release(&mut self) -> Result<(), ShootingError> {
+        let Some(Preview { object, place }) = self.preview.take() else { return Err(ShootingError::NothingSelected) };
+        let Some(place) = place else { return self.apply(Edit::Add { object }) };
+        let begin = std::time::Instant::now();
+        let state = self.state + place.edits;
+        let edits = &place.scene.edits[self.state..state];
+        let words: Vec<String> = edits.iter().map(|e| describe(e, &self.stage.materials)).collect();
+        // What is taken over leaves the version it was shot in before that becomes an entry of the log.
+        let last = self.versions.len() - 1;
+        let own = &place.change.own;
+        let (stage, width) = (&place.geometry.stage, self.field.width());
+        for (at, q) in place.shot.iter().enumerate() {
+            let i = at / width;
+            if self.stage.patches[i].is_present() {
+                self.versions[last].shot[at] -= q;
+                if !stage.patches[i].is_present() && own[i] {
+                    self.shot[at] -= q;
+                }
+            } else {
+                self.shot[at] += q;
+            }
+        }
+        self.field.join(&place.field);
+        self.scene = place.scene.clone();
+        self.rebuild(place.geometry.clone(), state, &words);
+        self.state = state;
+        let last = self.versions.len() - 1;
+        for (at, q) in place.shot.iter().enumerate() {
+            if self.stage.patches[at / width].is_present() {
+                self.versions[last].shot[at] += q;
+            }
+        }
+        self.costs.seconds += begin.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// The patch with most to shoot towards the place the object is shown at: its lamps first.
+    pub(super) fn next_preview(&self) -> Option<usize> {
+        let place = self.preview.as_ref()?.place.as_ref()?;
+        if let Some(lamp) = place.lamps.last() {
+            return Some(*lamp);
+        }
+        let pending = |i: usize| place.weight[i] * self.luminous(&self.pending(place, i));
+        let rank = |best: Option<(f64, usize)>, i: usize| match (best, pending(i)) {
+            (best, key) if key <= 0.0 || best.is_some_and(|(k, _)| k >= key) => best,
+            (_, key) => Some((key, i)),
+        };
+        (0..self.stage.patch_count()).fold(None, rank).map(|(_, i)| i)
+    }
+
+    /// Power of patch i, mean channel, that the place does not have yet.
+    fn pending(&self, place: &Place, i: usize) -> Vec<f64> {
+        let (width, bands) = (self.field.width(), self.field.bands);
+        if !self.stage.patches[i].is_present() {
+            return vec![0.0; bands];
+        }
+        let base = &self.newest().shot;
+        (i * width..i * width + bands).map(|at| base[at] - place.shot[at]).collect()
+    }
+
+    /// Shoots all that patch i has for the place.
+    pub(super) fn shoot_preview(&mut self, i: usize) -> usize {
+        let Some(mut preview) = self.preview.take() else { return 0 };
+        let Some(place) = &mut preview.place else { return 0 };
+        let width = self.field.width();
+        let base = self.newest().geometry.clone();
+        let (row, power) = if place.lamps.pop_if(|lamp| *lamp == i).is_some() {
+            let (area, emission) = (place.geometry.stage.patches[i].area, place.geometry.stage.emission(i));
+            let power: Vec<f64> = (0..width).map(|c| area * emission[c % emission.len()]).collect();
+            (self.whole(&place.geometry, i), power)
+        } else {
+            let held = i * width..(i + 1) * width;
+            let power = held.map(|at| self.newest().shot[at] - place.shot[at]).collect();
+            (self.row_between([&base, &place.geometry], Some(&place.change), i), power)
+        };
+        place.field.add(&row, &power);
+        for (c, p) in power.iter().enumerate() {
+            place.shot[i * width + c] += p;
+        }
+        self.preview = Some(preview);
+        self.costs.redistributions += 1;
+        self.account(&row, i);
+        row.sinks.len()
+    }
+}

@@ -1,0 +1,140 @@
+//! Which shot comes next [GSG90, interleaving redistribution and propagation].
+
+use super::row::Row;
+use super::{Shooting, Strategy};
+
+/// The next shot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Next {
+    /// What patch i has unshot.
+    Propagate(usize),
+    /// What patch i has shot in version v.
+    Redistribute(usize, usize),
+    /// What patch i has shot, towards an object that is being dragged.
+    Preview(usize),
+}
+
+/// A patch with the luminous power it would shoot, W.
+type Ranked<T> = Option<(f64, T)>;
+
+fn larger<T>(best: Ranked<T>, key: f64, what: T) -> Ranked<T> {
+    match best {
+        Some((k, _)) if k >= key => best,
+        _ => Some((key, what)),
+    }
+}
+
+impl Shooting {
+    /// The next shot; `None` if there is nothing to shoot at all.
+    pub(super) fn next(&mut self) -> Option<Next> {
+        if let Some(i) = self.next_preview() {
+            return Some(Next::Preview(i));
+        }
+        while let Some(i) = self.lamps.pop() {
+            // What rounding leaves is no light.
+            if self.unshot[i] > 1e-12 * self.emitted {
+                return Some(Next::Propagate(i));
+            }
+        }
+        let (propagate, redistribute) = (self.most_unshot(), self.most_to_redistribute());
+        let Some((energy, (v, i))) = redistribute else {
+            return propagate.filter(|(u, _)| *u > 0.0).map(|(_, i)| Next::Propagate(i));
+        };
+        self.redistribute_first &= energy > self.params.threshold * self.emitted;
+        let first = self.params.strategy == Strategy::One && self.redistribute_first;
+        match propagate {
+            // Below what may stay unshot only the log is left.
+            Some((unshot, j)) if !first && unshot > energy && self.unshot_share() > self.params.stop.unshot => {
+                Some(Next::Propagate(j))
+            }
+            _ => Some(Next::Redistribute(v, i)),
+        }
+    }
+
+    fn luminous_unshot(&self, i: usize) -> f64 {
+        let weights = &self.stage.photometry.weights;
+        weights.iter().enumerate().map(|(c, w)| w.abs() * self.unshot_at(i, c).abs()).sum()
+    }
+
+    /// Looks again at what patches have unshot: those that a shot reached, or all.
+    pub(super) fn refresh(&mut self, reached: Option<&Row>) {
+        let patches = self.stage.patch_count();
+        match reached {
+            Some(row) if row.sinks.len() < patches => {
+                for sink in &row.sinks {
+                    if let Some(e) = self.stage.elements.get(*sink as usize) {
+                        let i = e.patch as usize;
+                        self.unshot[i] = self.luminous_unshot(i);
+                    }
+                }
+            }
+            _ => {
+                self.unshot = (0..patches).map(|i| self.luminous_unshot(i)).collect();
+                self.emitted = self.luminous_emission();
+                if self.emitted == 0.0 {
+                    // All lamps are out: what is still to be taken back is measured by what they gave.
+                    self.emitted = self.brightest;
+                }
+                self.brightest = self.brightest.max(self.emitted);
+            }
+        }
+    }
+
+    /// Looks again at one patch.
+    pub(super) fn refresh_one(&mut self, i: usize) {
+        self.unshot[i] = self.luminous_unshot(i);
+    }
+
+    fn most_unshot(&self) -> Ranked<usize> {
+        self.unshot.iter().enumerate().fold(None, |best, (i, u)| larger(best, *u, i))
+    }
+
+    fn most_to_redistribute(&self) -> Ranked<(usize, usize)> {
+        let heads = self.versions.iter().enumerate().filter_map(|(v, version)| Some((v, *version.queue.last()?)));
+        heads.fold(None, |best, (v, (key, i))| larger(best, key, (v, i as usize)))
+    }
+
+    /// Luminous power emitted, W.
+    fn luminous_emission(&self) -> f64 {
+        let bands = self.field.bands;
+        let of = |i: usize| self.stage.patches[i].area * self.luminous(&self.vectors.emission[i * bands..][..bands]);
+        (0..self.stage.patch_count()).map(of).sum()
+    }
+
+    /// Luminous power unshot as a share of what is emitted (of the most that was ever emitted, where all lamps are out);
+    /// signs do not cancel.
+    pub fn unshot_share(&self) -> f64 {
+        let unshot: f64 = self.unshot.iter().sum();
+        if unshot == 0.0 { 0.0 } else { unshot / self.emitted }
+    }
+
+    /// True if no power is left in old versions.
+    pub fn is_drained(&self) -> bool {
+        self.versions.len() == 1
+    }
+
+    /// Bound on what unshot power may still bring, as a share of all luminous power: unshot / (1 - rho). Says nothing of
+    /// form factors, and nothing before the log is drained (`None`).
+    pub fn error_bound(&self) -> Option<f64> {
+        let brightest = self.vectors.reflectance.iter().copied().fold(0.0, f64::max);
+        let bands = self.field.bands;
+        let b = self.radiosity();
+        let all: f64 = (0..b.len()).map(|i| self.stage.patches[i].area * self.luminous(&b.values[i * bands..][..bands])).sum();
+        let missing = self.unshot_share() * self.emitted / (1.0 - brightest);
+        (self.is_drained() && all > 0.0).then(|| missing / all)
+    }
+
+    /// What unshot power would bring if it lit everything alike, as irradiance per band, W/m^2: for display. The mean of the
+    /// unshot power over the area, multiplied by reflections off the mean reflectance.
+    pub fn ambient(&self) -> Vec<f64> {
+        let bands = self.field.bands;
+        let area: f64 = self.stage.patches.iter().map(|p| p.area).sum();
+        let of = |c: usize| {
+            let patches = || self.stage.patches.iter().enumerate();
+            let unshot: f64 = patches().map(|(i, _)| self.unshot_at(i, c)).sum();
+            let rho = patches().map(|(i, p)| p.area * self.vectors.reflectance[i * bands + c]).sum::<f64>() / area;
+            unshot / area / (1.0 - rho)
+        };
+        (0..bands).map(of).collect()
+    }
+}
