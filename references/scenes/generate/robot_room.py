@@ -78,7 +78,7 @@ emission = [86, 80, 71]
 [[material]]
 name = "dim-lamp"
 reflectance = 0.2
-emission = [9, 8.5, 8]
+emission = [4, 3.8, 3.6]
 """
 
 TAIL = """
