@@ -461,7 +461,8 @@ fn the_cornell_box_has_its_measures() {
 
 #[test]
 fn closed_built_in_scenes_are_closed() {
-    for name in ["furnace", "furnace-l", "l-room", "cube-one-emitter", "furnished-room", "dynamic-cube"] {
+    let rooms = ["furnished-room", "dynamic-cube", "cube-room", "cube-room-edits", "robot-room"];
+    for name in ["furnace", "furnace-l", "l-room", "cube-one-emitter"].into_iter().chain(rooms) {
         let scene = builtin(name).unwrap();
         assert_eq!(scene.enclosure, Some(true), "{name}");
         for state in 0..=scene.edits.len() {
@@ -471,7 +472,7 @@ fn closed_built_in_scenes_are_closed() {
             check_consistent(&stage);
         }
     }
-    assert_eq!(builtin_names().len(), 18);
+    assert_eq!(builtin_names().len(), 21);
     assert!((1000..=1500).contains(&builtin("furnished-room").unwrap().at(0).unwrap().patch_count()));
 }
 
