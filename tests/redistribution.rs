@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 const SEED: u64 = 5;
-const RAYS: u64 = 512;
+const RAYS: u64 = 128;
 const RANDOMISATIONS: u16 = 8;
 
 fn params() -> Params {
@@ -66,7 +66,7 @@ fn scene() -> Scene {
             material("lamp", [0.2; 3], [10.0, 12.0, 9.0]),
             material("box", [0.4, 0.3, 0.8], [0.0; 3]),
             material("glow", [0.5, 0.5, 0.2], [1.0, 0.5, 2.0]),
-            material("plate", [0.9, 0.1, 0.3], [0.0; 3]),
+            material("plate", [0.8, 0.1, 0.3], [0.0; 3]),
         ],
         surfaces: vec![
             surface("room", "scene", box_polygons(DVec3::ZERO, DVec3::ONE, true), 0, 2, 2),
@@ -113,7 +113,7 @@ fn random_edit(n: &mut Numbers, there: &BTreeMap<&'static str, bool>) -> Edit {
                 (0..3).map(|_| if dark { 0.0 } else { n.between(0.0, most) }).collect::<Vec<f64>>()
             };
             let material = below(n, 5) as u32;
-            let reflectance = (below(n, 3) > 0).then(|| any(n, 0.9));
+            let reflectance = (below(n, 3) > 0).then(|| any(n, 0.7));
             Edit::Material { material, emission: (below(n, 2) > 0).then(|| any(n, 5.0)), reflectance }
         }
     }
@@ -194,7 +194,8 @@ fn invariant_gap(solver: &Shooting, known: &mut Known) -> f64 {
     let (b, u, log) = (solver.radiosity(), solver.unshot(), solver.log());
     let now = known.of(solver.state(), &stage).clone();
     let mut arrived = vec![0.0; n * bands];
-    let mut shot: Vec<f64> = (0..n * bands).map(|k| stage.patches[k / bands].area * (b.values[k] - u.values[k])).collect();
+    let mut shot: Vec<f64> =
+        (0..n * bands).map(|k| stage.patches[k / bands].area * (b.values[k] - u.values[k])).collect();
     for LogEntry { state, patches, .. } in &log {
         let then = &known.states[state];
         for (j, power) in patches {
@@ -209,8 +210,13 @@ fn invariant_gap(solver: &Shooting, known: &mut Known) -> f64 {
             (0..n).for_each(|i| arrived[i * bands + c] += now[j][i] * shot[j * bands + c]);
         }
     }
-    let emitted = (0..n).flat_map(|i| stage.emission(i).iter().map(move |e| (i, e))).map(|(i, e)| stage.patches[i].area * e);
-    let size = shot.iter().map(|q| q.abs()).chain(emitted).fold(1e-9, f64::max);
+    let emitted =
+        (0..n).flat_map(|i| stage.emission(i).iter().map(move |e| (i, e))).map(|(i, e)| stage.patches[i].area * e);
+    // Where all lamps are out, what was bright before measures what rounding may leave.
+    let size = shot.iter().map(|q| q.abs()).chain(emitted).fold(solver.energy().brightest, f64::max);
+    if size == 0.0 {
+        return 0.0;
+    }
     let mut gap = 0.0f64;
     for i in (0..n).filter(|i| stage.patches[*i].is_present()) {
         for c in 0..bands {
@@ -276,21 +282,30 @@ fn history(seed: u64, kernel: KernelKind, edits: usize) -> (usize, f64) {
     // Where all lamps are out, what was bright before measures what rounding may leave.
     let size = exact.iter().fold(solver.energy().brightest, |m, x| m.max(x.abs()));
     let gap = b.values.iter().zip(&exact).map(|(x, y)| (x - y).abs() / size).fold(0.0, f64::max);
-    if std::env::var("HIST").is_ok() { println!("{seed}: {made} edits {:?}", solver.costs()); }
     (made, gap)
 }
 
-#[test]
-fn any_sequence_of_edits_ends_in_the_dense_solution() {
+/// Histories of some seeds; most of the edits must be possible.
+fn histories(seeds: std::ops::Range<u64>) {
     let (mut edits, mut worst) = (0, 0.0f64);
-    for seed in 0..300 {
+    for seed in seeds.clone() {
         let (made, gap) = history(seed, KernelKind::Builtin, 1 + seed as usize % 6);
         assert!(gap < 1e-9, "history {seed}: off by {gap:e}");
         edits += made;
         worst = worst.max(gap);
     }
-    println!("300 histories, {edits} edits: at most {worst:.1e} from the dense solution");
-    assert!(edits > 600, "{edits}");
+    println!("histories {seeds:?}, {edits} edits: at most {worst:.1e} from the dense solution");
+    assert!(edits as u64 > 2 * (seeds.end - seeds.start), "{edits}");
+}
+
+#[test]
+fn any_sequence_of_edits_ends_in_the_dense_solution() {
+    histories(0..100);
+}
+
+#[test]
+fn so_do_a_hundred_others() {
+    histories(100..200);
 }
 
 #[test]

@@ -183,12 +183,7 @@ impl<'a> Tracer<'a> {
 
 impl Tracer<'static> {
     /// A tracer that keeps its stage.
-    pub fn shared(
-        stage: Arc<Stage>,
-        kernel: Arc<dyn RayKernel>,
-        second: Arc<dyn RayKernel>,
-        enclosure: bool,
-    ) -> Self {
+    pub fn shared(stage: Arc<Stage>, kernel: Arc<dyn RayKernel>, second: Arc<dyn RayKernel>, enclosure: bool) -> Self {
         Self::on(Held::Shared(stage), kernel, second, enclosure)
     }
 }

@@ -100,8 +100,7 @@ impl Fans {
             let randomisation = &self.net.randomisation[batch * BATCH..];
             Looking { old, new, change, facets: [from.facet, to.facet] }.look(s, randomisation)
         };
-        let found: Vec<(Vec<Diverted>, u64)> =
-            batches.par_iter().map_init(Scratch::default, look).collect();
+        let found: Vec<(Vec<Diverted>, u64)> = batches.par_iter().map_init(Scratch::default, look).collect();
         let mut traced = 0;
         for (diverted, rays) in found {
             traced += rays;

@@ -229,8 +229,21 @@ mod tests {
         assert_eq!(Params::redistribution(&p.to_string()).unwrap(), p);
         let cube = Params::redistribution("factors=hemicube,resolution=50,delta=exact,ranking=exact").unwrap();
         assert_eq!(Params::redistribution(&cube.to_string()).unwrap(), cube);
-        assert_eq!(Params::progressive("resolution=50").unwrap().factors, Params::progressive("factors=hemicube,resolution=50").unwrap().factors);
-        for bad in ["rays", "rays=0", "unshot=2", "unshot=-1", "strategy=two", "foo=1", "rays=8,resolution=50", "shots=1,shots=2", "resolution=51"] {
+        assert_eq!(
+            Params::progressive("resolution=50").unwrap().factors,
+            Params::progressive("factors=hemicube,resolution=50").unwrap().factors
+        );
+        for bad in [
+            "rays",
+            "rays=0",
+            "unshot=2",
+            "unshot=-1",
+            "strategy=two",
+            "foo=1",
+            "rays=8,resolution=50",
+            "shots=1,shots=2",
+            "resolution=51",
+        ] {
             assert!(Params::progressive(bad).is_err(), "{bad}");
         }
         for bad in ["strategy=three", "samples=0", "ranking=best", "before=1"] {

@@ -119,7 +119,8 @@ impl Shooting {
         let brightest = self.vectors.reflectance.iter().copied().fold(0.0, f64::max);
         let bands = self.field.bands;
         let b = self.radiosity();
-        let all: f64 = (0..b.len()).map(|i| self.stage.patches[i].area * self.luminous(&b.values[i * bands..][..bands])).sum();
+        let all: f64 =
+            (0..b.len()).map(|i| self.stage.patches[i].area * self.luminous(&b.values[i * bands..][..bands])).sum();
         let missing = self.unshot_share() * self.emitted / (1.0 - brightest);
         (self.is_drained() && all > 0.0).then(|| missing / all)
     }

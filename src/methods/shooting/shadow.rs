@@ -28,7 +28,8 @@ impl Outline {
     pub fn of(corners: &[DVec3]) -> Option<Self> {
         let first = *corners.first()?;
         let (low, high) = corners.iter().fold((first, first), |(l, h), p| (l.min(*p), h.max(*p)));
-        let margin = DVec3::splat(MARGIN * low.distance(high).max(low.abs().max_element()).max(high.abs().max_element()));
+        let margin =
+            DVec3::splat(MARGIN * low.distance(high).max(low.abs().max_element()).max(high.abs().max_element()));
         let (low, high) = (low - margin, high + margin);
         let points = if corners.len() > MOST_POINTS {
             let at = |k: usize| {
@@ -86,7 +87,8 @@ impl Arc {
         if (0..2).all(|c| low[c] <= 0.0 && high[c] >= 0.0) {
             return Self::ALL;
         }
-        let corner = move |k: usize| [if k & 1 == 0 { low[0] } else { high[0] }, if k & 2 == 0 { low[1] } else { high[1] }];
+        let corner =
+            move |k: usize| [if k & 1 == 0 { low[0] } else { high[0] }, if k & 2 == 0 { low[1] } else { high[1] }];
         Self::of((0..4).map(corner))
     }
 
@@ -152,7 +154,9 @@ mod tests {
             let corners: Vec<DVec3> = {
                 let (middle, half) = (n.point(-cube, cube), n.point(DVec3::splat(0.01), DVec3::splat(0.5)));
                 (0..8)
-                    .map(|k| middle + half * DVec3::new([-1.0, 1.0][k & 1], [-1.0, 1.0][k >> 1 & 1], [-1.0, 1.0][k >> 2]))
+                    .map(|k| {
+                        middle + half * DVec3::new([-1.0, 1.0][k & 1], [-1.0, 1.0][k >> 1 & 1], [-1.0, 1.0][k >> 2])
+                    })
                     .collect()
             };
             let outline = Outline::of(&corners).unwrap();

@@ -100,7 +100,10 @@ impl Shooting {
             Factors::Rays { rays, randomisations } => {
                 let each = Plan { rays, randomisations, ..Plan::default() }.rays_per_randomisation();
                 let counter = Counter::new(sinks(&stage), randomisations);
-                (Caster::Rays(Box::new((Fans::new(each, randomisations, seed), counter))), usize::from(randomisations) + 1)
+                (
+                    Caster::Rays(Box::new((Fans::new(each, randomisations, seed), counter))),
+                    usize::from(randomisations) + 1,
+                )
             }
             Factors::Hemicube(p) => {
                 let p = p.validated()?;
@@ -354,7 +357,8 @@ impl Shooting {
                 counter.take(fans.rays)
             }
             (Caster::Hemicube(table, params), Some(_)) => {
-                let (before, after) = (hemicube_row(old, patch, table, params), hemicube_row(new, patch, table, params));
+                let (before, after) =
+                    (hemicube_row(old, patch, table, params), hemicube_row(new, patch, table, params));
                 less(&after, &before)
             }
             (_, None) => Row::new(self.field.channels),
