@@ -1,5 +1,6 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
+mod converge;
 mod form_factors;
 mod judge;
 mod rays;
@@ -10,6 +11,7 @@ mod setup;
 mod solve;
 mod suites;
 
+pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
 pub use form_factors::{
     FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
 };
@@ -90,6 +92,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// The same with limits and a verdict.
     Check(CheckArgs),
+    /// Convergence curves: error against shots, rays and seconds, of any methods and of series of snapshots.
+    Converge(ConvergeCommand),
     /// Pictures of a solution or a reference, or of the patches alone.
     Render(RenderArgs),
     /// Write the HTML report of a finished run again.
