@@ -1,6 +1,7 @@
 //! Values of options: fractions and percentages, spans of time, states.
 
 use clap::ValueEnum;
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -98,6 +99,25 @@ impl FromStr for Pixels {
     }
 }
 
+/// A folder with the name it goes by, written NAME=DIR.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedFolder {
+    /// What it is called.
+    pub name: String,
+    /// Where it is.
+    pub folder: PathBuf,
+}
+
+impl FromStr for NamedFolder {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('=').filter(|(name, folder)| !name.trim().is_empty() && !folder.is_empty());
+        let (name, folder) = parts.ok_or_else(|| format!("\"{text}\" is not NAME=DIR: write mine=runs/mine"))?;
+        Ok(Self { name: name.trim().into(), folder: folder.into() })
+    }
+}
+
 /// What a picture in false colours shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Quantity {
@@ -150,6 +170,13 @@ mod tests {
             assert_eq!(good.parse::<Quantity>().unwrap().to_string(), good);
         }
         assert!("band:".parse::<Quantity>().is_err() && "r".parse::<Quantity>().is_err());
+    }
+
+    #[test]
+    fn named_folders() {
+        let named: NamedFolder = "mine=runs/a=b".parse().unwrap();
+        assert_eq!((named.name.as_str(), named.folder), ("mine", PathBuf::from("runs/a=b")));
+        assert!(["mine", "=runs", "mine=", ""].iter().all(|bad| bad.parse::<NamedFolder>().is_err()));
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod matrix;
 mod npz;
 mod patches;
 pub mod scene;
+mod series;
 mod solution;
 mod store;
 mod unfinished;
@@ -23,6 +24,7 @@ pub use matrix::{
     write_matrix,
 };
 pub use patches::{PatchFormat, write_patches};
+pub use series::{INDEX as SERIES_INDEX, SeriesWriter, read_series};
 pub use solution::{BandNames, SolutionFile, SolutionFormat, read_solution, write_solution};
 pub use store::{Files, StoredReference, is_reference};
 pub use unfinished::abandon;

@@ -1,6 +1,7 @@
 //! Conducts whole runs: reference, solve, check, demo. Hands finished records to reports, which only format.
 
 mod contributions;
+pub mod converge;
 mod judge;
 mod kept;
 mod receivers;

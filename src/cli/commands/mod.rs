@@ -2,6 +2,11 @@
 
 mod check;
 mod check_residual;
+mod converge;
+mod converge_diff;
+mod converge_references;
+mod converge_refine;
+mod converge_told;
 mod demo;
 mod form_factors;
 mod form_factors_check;
@@ -19,7 +24,7 @@ mod split;
 mod told;
 mod validate;
 
-use super::args::{Cli, Command, FormFactorsCommand, MatrixCommand};
+use super::args::{Cli, Command, ConvergeCommand, ConvergeOther, FormFactorsCommand, MatrixCommand};
 use super::console::Console;
 use super::exit::Failure;
 
@@ -39,6 +44,8 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Solve(args) => solve::run(args, kernel, console),
         Command::Compare(args) => check::compare(args, cli.global.kernel, console),
         Command::Check(args) => check::check(args, cli.global.kernel, console),
+        Command::Converge(ConvergeCommand::Run(args)) => converge::run(args, cli.global.kernel, console),
+        Command::Converge(ConvergeCommand::Other(ConvergeOther::Diff(args))) => converge_diff::run(args, console),
         Command::Render(args) => render::run(args, kernel, console),
         Command::Report { directory } => report::run(directory, cli.global.kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),

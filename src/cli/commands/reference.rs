@@ -143,7 +143,12 @@ fn forget_journal(output: &Path, stage: &Stage, kernel: &KernelInfo, options: &O
 }
 
 /// Opens the journal of this run beside the target, and says what an earlier one has left.
-fn open_work(claim: &Claim, session: &Session, options: &Options, console: &Console) -> Result<Arc<KeptWork>, Failure> {
+pub(super) fn open_work(
+    claim: &Claim,
+    session: &Session,
+    options: &Options,
+    console: &Console,
+) -> Result<Arc<KeptWork>, Failure> {
     let path = claim.journal();
     let work = KeptWork::open(&path, session, options)
         .map_err(|e| FileError::system(&path, "read and changed", &e).mend("remove it, or name another folder"))?;
@@ -162,7 +167,7 @@ fn open_work(claim: &Claim, session: &Session, options: &Options, console: &Cons
 }
 
 /// An interruption keeps the finished rows and says how many there are.
-fn arm(work: &Arc<KeptWork>) -> interrupt::Armed {
+pub(super) fn arm(work: &Arc<KeptWork>) -> interrupt::Armed {
     let work = work.clone();
     interrupt::before_dying(move || {
         let rows = work.flush();

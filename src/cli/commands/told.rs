@@ -120,7 +120,7 @@ fn level(per: PerLevel) -> &'static str {
     if per == PerLevel::Element { "element" } else { "patch" }
 }
 
-fn state(state: StateChoice) -> String {
+pub(super) fn state(state: StateChoice) -> String {
     match state {
         StateChoice::Initial => "initial".into(),
         StateChoice::Final => "final".into(),
@@ -186,7 +186,7 @@ pub fn replay(asked: &Asked) -> String {
 }
 
 /// A word a shell takes as one.
-fn quoted(word: &str) -> String {
+pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:%=,".contains(c);
     if word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }

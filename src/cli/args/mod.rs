@@ -1,0 +1,120 @@
+//! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
+
+mod converge;
+mod form_factors;
+mod judge;
+mod rays;
+mod reference;
+mod render;
+mod scene;
+mod setup;
+mod solve;
+mod suites;
+
+pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
+pub use form_factors::{
+    FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
+};
+pub use judge::{CheckArgs, CompareArgs, OnInconclusive};
+pub use rays::{Estimator, RayArgs, SuiteArgs};
+pub use reference::{ReferenceArgs, Truth};
+pub use render::{OnOff, RenderArgs, RenderStyle};
+pub use scene::{SceneArgs, SceneCommand};
+pub use setup::SetupCommand;
+pub use solve::SolveArgs;
+pub use suites::{ReceiversArgs, ValidateCommand};
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Ray-traced reference validator and error metrics for radiosity and view factors.
+///
+/// Exit codes: 0 done, every limit met; 1 a limit is exceeded; 2 bad usage or input; 3 inconclusive;
+/// 4 the reference failed its own self-check; 70 a bug; 130 interrupted (143 by SIGTERM).
+#[derive(Debug, Parser)]
+#[command(name = "etalon", version, propagate_version = true, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Options that every command takes.
+    #[command(flatten)]
+    pub global: Global,
+}
+
+/// Options that every command takes.
+#[derive(Debug, Clone, Args)]
+pub struct Global {
+    /// Print one JSON object on stdout and nothing else.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Say only what was asked for.
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// Say more (settings in force, kernels, row sums).
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    /// Threads; default: all.
+    #[arg(long, global = true, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Ray kernel.
+    #[arg(long, global = true, value_enum, default_value_t = Kernel::Auto)]
+    pub kernel: Kernel,
+}
+
+/// Ray kernels by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Kernel {
+    /// Embree 4 where there is one, else the built-in.
+    Auto,
+    /// Embree 4.
+    Embree,
+    /// Pure Rust, double precision.
+    Builtin,
+    /// Embree 4 through the published wrapper (cargo feature `embree4-rs`).
+    #[value(name = "embree4-rs")]
+    Embree4Rs,
+}
+
+/// Commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Look at a scene.
+    #[command(subcommand)]
+    Scene(SceneCommand),
+    /// Form-factor matrix by ray casting, with standard errors; check or repair a matrix of any tool.
+    FormFactors(FormFactorsCommand),
+    /// Reference radiosity, stored for re-use.
+    Reference(ReferenceArgs),
+    /// Run a candidate method.
+    Solve(SolveArgs),
+    /// Metrics of a solution against a reference (or another solution).
+    Compare(CompareArgs),
+    /// The same with limits and a verdict.
+    Check(CheckArgs),
+    /// Convergence curves: error against shots, rays and seconds, of any methods and of series of snapshots.
+    Converge(ConvergeCommand),
+    /// Pictures of a solution or a reference, or of the patches alone.
+    Render(RenderArgs),
+    /// Write the HTML report of a finished run again.
+    Report {
+        /// Directory that `check --report`, `compare --report` or `demo` wrote.
+        directory: PathBuf,
+    },
+    /// The whole chain on the Cornell box.
+    Demo {
+        /// Where the report goes.
+        #[arg(short, long, value_name = "DIR", default_value = "reports/demo")]
+        output: PathBuf,
+    },
+    /// Irradiance at the receivers of a scene, with standard errors.
+    Receivers(ReceiversArgs),
+    /// Published test suites: what this program is validated against.
+    #[command(subcommand)]
+    Validate(ValidateCommand),
+    /// Get what is missing on this machine.
+    #[command(subcommand)]
+    Setup(SetupCommand),
+    /// Ray kernels found, threads, self-test.
+    Doctor,
+}

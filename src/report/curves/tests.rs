@@ -1,0 +1,92 @@
+use super::testing::{curve, report};
+use super::*;
+use crate::study::converge::{MeshPoint, MeshSize, diff};
+
+fn page(files: &[Artifact]) -> String {
+    let page = files.iter().find(|f| f.name == CURVES_PAGE).expect("a page");
+    String::from_utf8(page.bytes.clone()).expect("text")
+}
+
+#[test]
+fn a_run_has_its_tables_drawings_and_page() {
+    let files = convergence_files(&report()).expect("files");
+    let mut names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
+    names.sort_unstable();
+    let mut known = vec!["curves.csv", "index.html", "rates.csv", "reached.csv", "timing.json"];
+    let drawings: Vec<String> = ["rms-shots-edit-0", "rms-rays-edit-0", "rms-seconds-edit-0"]
+        .into_iter()
+        .map(String::from)
+        .chain(["rms", "top1"].iter().flat_map(|m| ["shots", "rays", "seconds"].map(|a| format!("{m}-{a}-edit-1"))))
+        .map(|n| n + ".svg")
+        .collect();
+    known.extend(drawings.iter().map(String::as_str));
+    known.sort_unstable();
+    assert_eq!(names, known);
+    let page = page(&files);
+    for svg in files.iter().filter(|f| f.name.ends_with(".svg")) {
+        assert!(page.contains(std::str::from_utf8(&svg.bytes).expect("text").trim_end()), "{}", svg.name);
+    }
+    assert!(page.contains("a room &lt;with&gt;") && !page.contains("<with>"));
+    let outside = page.replace("http://www.w3.org/2000/svg", "");
+    assert!(!outside.contains("http"), "asks for something from outside");
+}
+
+#[test]
+fn only_the_marked_block_depends_on_the_clock() {
+    let outside = |r: &CurvesReport| {
+        let page = page(&convergence_files(r).expect("files"));
+        let (begin, end) = (page.find("<!-- wall-clock: begin"), page.find("<!-- wall-clock: end"));
+        page[..begin.expect("a block")].to_string() + &page[end.expect("its end")..]
+    };
+    let mut slow = report();
+    for p in slow.curves.iter_mut().flat_map(|c| &mut c.points) {
+        p.seconds *= 7.0;
+        p.seconds_since_edit *= 7.0;
+    }
+    slow.digest = crate::study::converge::digest(&slow.curves, 0.95);
+    slow.about.timing.clear();
+    assert_eq!(outside(&report()), outside(&slow));
+}
+
+#[test]
+fn the_first_method_is_what_the_others_are_measured_by() {
+    let files = convergence_files(&report()).expect("files");
+    let table = files.iter().find(|f| f.name == "reached.csv").expect("a table");
+    let text = std::str::from_utf8(&table.bytes).expect("text");
+    // 0.15 / shots against 1 / shots: 3 % at 10 and at 40 shots, of 10, 20, 40, ...
+    let line = text.lines().find(|l| l.starts_with("redistribution,1,rms,0.03,")).expect("a line");
+    assert!(line.starts_with("redistribution,1,rms,0.03,10.0,10.0,4.0,"), "{line}");
+}
+
+#[test]
+fn two_runs_are_overlaid() {
+    let runs = [vec![curve("m", 0, 1.0)], vec![curve("m", 0, 2.0), curve("other", 0, 1.0)]];
+    let differences = diff(&runs[0], &runs[1]);
+    let about = About { confidence: 0.95, ..report().about };
+    let report = DifferenceReport { about, names: ["old".into(), "new".into()], curves: runs, differences };
+    let files = difference_files(&report).expect("files");
+    let page = page(&files);
+    assert!(page.contains("old: m") && page.contains("new: m") && !page.contains("new: other"));
+    assert!(page.contains("stroke-dasharray=\"6 4\"") && page.contains("apart"));
+    assert!(difference_text(&report).contains("shots at 3 %: ratio 2.00 (apart)"), "{}", difference_text(&report));
+}
+
+#[test]
+fn a_refinement_states_its_order() {
+    let point = |factor: u32| {
+        let h = 0.5 / f64::from(factor);
+        let value = 0.2 * h * h;
+        let rms = crate::stats::Estimate { value, std_err: Some(0.01 * value), low: 0.97 * value, high: 1.03 * value };
+        let size = MeshSize { factor, patches: 6 * (factor * factor) as usize, longest_edge: h, mean_size: h };
+        MeshPoint { size, rms: Some(rms), noise_floor: Some(1e-6) }
+    };
+    let curves = vec![MeshCurve { method: "gather".into(), points: [1, 2, 4, 8].map(point).to_vec() }];
+    let report = MeshReport { about: report().about, curves };
+    let files = mesh_files(&report).expect("files");
+    let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
+    assert_eq!(names, ["refine.csv", "orders.csv", "rms-size.svg", "index.html", "timing.json"]);
+    assert!(mesh_text(&report).contains("order 2.00"), "{}", mesh_text(&report));
+    assert!(
+        (mesh_json(&report)["curves"][0]["order"]["slope"]["value"].as_f64().expect("a number") - 2.0).abs() < 1e-9
+    );
+}
