@@ -8,12 +8,12 @@ use crate::solver::System;
 /// How a method came to its solution. No clocks in it: the same input gives the same info.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodInfo {
-    /// Iterations of the solver, per band.
+    /// Iterations of the solver, per band; shots for methods that shoot.
     pub iterations: Vec<usize>,
     /// Relative residual of the patch system that is left, per band.
     pub residual: Vec<f64>,
-    /// Row sums of the form factors used.
-    pub row_sums: RowSums,
+    /// Row sums of the form factors used; `None` for methods that forget their form factors shot by shot.
+    pub row_sums: Option<RowSums>,
 }
 
 /// Sums of the form-factor rows of the patches present; 1 each in an exact closed scene.

@@ -10,6 +10,7 @@ mod residual;
 mod reuse;
 mod run;
 mod session;
+mod shoot;
 mod split;
 pub mod validate;
 
@@ -22,4 +23,5 @@ pub use residual::{ResidualRequest, ResidualRun, residual};
 pub use reuse::falls_short;
 pub use run::{SolveOutcome, SolveRequest, continuous_reference, reference, reference_on, solve};
 pub use session::Session;
+pub use shoot::{Course, Moments, ShootRequest, shoot};
 pub use split::{Beside, SplitError, split_error};

@@ -3,6 +3,7 @@
 use super::Session;
 use crate::estimate::{cast, element_emitters, patch_emitters};
 use crate::io::StoredReference;
+use crate::methods::shooting::{self, Shooting};
 use crate::methods::{Method, MethodError, MethodInfo, PatchVectors, gather, hemicube};
 use crate::raycast::agree;
 use crate::reference::{self, Evidence, Kept, Options, Progress, Reference, ReferenceError};
@@ -111,8 +112,8 @@ pub struct SolveOutcome {
     pub radiosity: Radiosity,
     /// How the method got there.
     pub info: MethodInfo,
-    /// Form factors computed or used.
-    pub form_factors: FormFactors,
+    /// Form factors computed or used; `None` for methods that forget them shot by shot.
+    pub form_factors: Option<FormFactors>,
 }
 
 /// Runs a candidate.
@@ -136,9 +137,18 @@ pub fn solve(session: &Session, request: &SolveRequest, progress: &dyn Progress)
             let solved = hemicube::solve_with(stage, &f, &p)?;
             (solved.0, solved.1, f)
         }
+        (Method::Progressive(p), _) => return progressive(session, p, request),
+        (Method::Redistribution(_), _) => return Err(MethodError::NoEdits),
     };
     let radiosity = if request.per_element { per_element(session, request, &radiosity)? } else { radiosity };
-    Ok(SolveOutcome { radiosity, info, form_factors })
+    Ok(SolveOutcome { radiosity, info, form_factors: Some(form_factors) })
+}
+
+fn progressive(session: &Session, params: shooting::Params, request: &SolveRequest) -> Result<SolveOutcome, MethodError> {
+    let mut solver = Shooting::on(session.stage().clone(), params, session.kind(), request.seed)?;
+    solver.converge();
+    let radiosity = if request.per_element { solver.element_radiosity() } else { solver.radiosity() };
+    Ok(SolveOutcome { radiosity, info: solver.info(), form_factors: None })
 }
 
 fn with_matrix(f: &FormFactors, solved: (Radiosity, MethodInfo)) -> (Radiosity, MethodInfo, FormFactors) {
@@ -150,6 +160,7 @@ fn per_element(session: &Session, request: &SolveRequest, patches: &Radiosity) -
     let stage = session.stage();
     let rows = match request.method {
         Method::Hemicube(p) => hemicube::element_form_factors(stage, &p)?,
+        Method::Progressive(_) | Method::Redistribution(_) => return Err(MethodError::NoEdits),
         Method::Gather(p) => {
             let plan = p.plan();
             let stream = Stream::new(Role::Candidate, request.seed);

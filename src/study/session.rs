@@ -12,6 +12,7 @@ pub struct Session<'a> {
     exact: Arc<dyn RayKernel>,
     enclosure: bool,
     notice: Option<String>,
+    kind: KernelKind,
 }
 
 impl<'a> Session<'a> {
@@ -20,12 +21,17 @@ impl<'a> Session<'a> {
         let kernels = open_kernels(kind, stage)?;
         let exact: Arc<dyn RayKernel> = kernels.exact;
         let enclosure = stage.enclosure.unwrap_or_else(|| is_closed(stage, &exact));
-        Ok(Self { stage, kernel: kernels.kernel, exact, enclosure, notice: kernels.notice })
+        Ok(Self { stage, kernel: kernels.kernel, exact, enclosure, notice: kernels.notice, kind })
     }
 
     /// What the user should know about the kernel: that there is no Embree, and why.
     pub fn notice(&self) -> Option<&str> {
         self.notice.as_deref()
+    }
+
+    /// The kernel that was asked for.
+    pub fn kind(&self) -> KernelKind {
+        self.kind
     }
 
     /// The stage.

@@ -2,7 +2,7 @@
 
 use super::rays::Estimator;
 use super::scene::SceneArgs;
-use crate::cli::values::PerLevel;
+use crate::cli::values::{PerLevel, Span};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -12,7 +12,8 @@ pub struct SolveArgs {
     /// Scene.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// gather or hemicube, with parameters as hemicube:resolution=200,delta=exact.
+    /// gather, hemicube, progressive or redistribution, with parameters as hemicube:resolution=200,delta=exact or
+    /// progressive:rays=4096,unshot=0.1%.
     #[arg(long, value_name = "M")]
     pub method: String,
     /// .csv, .json, .npy or .npz.
@@ -33,6 +34,15 @@ pub struct SolveArgs {
     /// Estimator of ray-cast methods: auto settles what it can without rays.
     #[arg(long, value_enum, default_value_t = Estimator::Auto)]
     pub estimator: Estimator,
+    /// Keep the series of snapshots of a method that shoots, as `converge --series` reads it (per patch).
+    #[arg(long, value_name = "DIR")]
+    pub snapshots: Option<PathBuf>,
+    /// Snapshots after these numbers of shots since the last edit; a dense choice unless given.
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', requires = "snapshots")]
+    pub snapshot_shots: Vec<u64>,
+    /// Also a snapshot every so much time of computing: 0.5s.
+    #[arg(long, value_name = "T", requires = "snapshots")]
+    pub snapshot_every: Option<Span>,
     /// Level of the values.
     #[arg(long, value_enum, default_value_t = PerLevel::Patch)]
     pub per: PerLevel,

@@ -20,6 +20,7 @@ mod render;
 mod report;
 mod scene;
 mod solve;
+mod solve_by_shots;
 mod split;
 mod told;
 mod validate;

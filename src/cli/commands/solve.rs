@@ -1,12 +1,13 @@
 //! `etalon solve`
 
-use super::inputs;
+use super::{inputs, solve_by_shots};
 use crate::cli::args::SolveArgs;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
 use crate::io::{BandNames, MatrixLayout, SolutionFormat, read_form_factors_of, write_matrix, write_solution};
-use crate::methods::Method;
+use crate::methods::shooting::Factors;
+use crate::methods::{Method, RowSums};
 use crate::raycast::KernelKind;
 use crate::reference::check_size;
 use crate::study::{self, Receivers, SolveRequest};
@@ -18,6 +19,12 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
     let layout = args.save_form_factors.as_deref().map(MatrixLayout::for_reuse).transpose()?;
     args.save_form_factors.as_deref().map(inputs::check_writable).transpose()?;
     let method = method(args)?;
+    if let Method::Progressive(params) | Method::Redistribution(params) = method {
+        return solve_by_shots::run(args, &method, params, format, kernel, console);
+    }
+    if args.snapshots.is_some() {
+        return Err(Failure::input("--snapshots is for methods that shoot: progressive and redistribution"));
+    }
     let stage = inputs::stage(&args.scene, console)?;
     let given = args.form_factors.as_deref().map(|f| read_form_factors_of(f, &stage)).transpose()?;
     if let (Method::Gather(p), None) = (&method, &given) {
@@ -32,10 +39,10 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
     let (hash, present) = (stage.hash(), receivers.present());
     let names = BandNames { scene: &stage.name, scene_hash: &hash, bands: &stage.photometry.bands, present: &present };
     inputs::write(&args.output, &write_solution(&outcome.radiosity, names, format))?;
-    if let (Some(path), Some(layout)) = (&args.save_form_factors, &layout) {
-        inputs::write(path, &write_matrix(path, &stage, &outcome.form_factors, layout, false)?)?;
+    if let (Some(path), Some(layout), Some(f)) = (&args.save_form_factors, &layout, &outcome.form_factors) {
+        inputs::write(path, &write_matrix(path, &stage, f, layout, false)?)?;
     }
-    let sums = outcome.info.row_sums;
+    let sums = outcome.info.row_sums.unwrap_or(RowSums { min: 0.0, max: 0.0, mean: 0.0 });
     let text = format!(
         "{method} on {} ({} patches): {} iterations, residual {:.1e}, row sums {:.6} to {:.6}; written to {}",
         stage.name,
@@ -62,6 +69,14 @@ fn method(args: &SolveArgs) -> Result<Method, Failure> {
         && !args.method.contains("estimator=")
     {
         p.estimator = inputs::estimator(args.estimator);
+    }
+    if let (Method::Progressive(p) | Method::Redistribution(p), Some(n)) = (&mut method, args.rays)
+        && !args.method.contains("rays=")
+    {
+        let Factors::Rays { rays, .. } = &mut p.factors else {
+            return Err(Failure::input("--rays is for form factors by rays; hemi-cubes take resolution=N"));
+        };
+        *rays = n;
     }
     match (&mut method, args.rays) {
         (Method::Gather(p), Some(rays)) if !args.method.contains("rays=") => p.rays = rays,

@@ -40,7 +40,7 @@ pub fn solve(
 pub fn solve_with(stage: &Stage, form_factors: &FormFactors) -> Result<(Radiosity, MethodInfo), SolverError> {
     let vectors = PatchVectors::of(stage);
     let (values, info) = krylov::solve(&vectors.system(), form_factors, None, &krylov::Params::default(), |_, _| {})?;
-    let row_sums = RowSums::of(stage, form_factors);
+    let row_sums = Some(RowSums::of(stage, form_factors));
     let info = MethodInfo { iterations: info.iterations, residual: info.residual, row_sums };
     Ok((Radiosity { bands: vectors.bands, values, std_err: None }, info))
 }

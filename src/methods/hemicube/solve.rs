@@ -118,7 +118,7 @@ pub fn solve_with(
     let vectors = PatchVectors::of(stage);
     let stop = gauss_seidel::Params { tolerance: params.tolerance, ..gauss_seidel::Params::default() };
     let (values, info) = gauss_seidel::solve(&vectors.system(), form_factors, &stop, |_| ())?;
-    let row_sums = RowSums::of(stage, form_factors);
+    let row_sums = Some(RowSums::of(stage, form_factors));
     let radiosity = Radiosity { bands: vectors.bands, values, std_err: None };
     Ok((radiosity, MethodInfo { iterations: info.iterations, residual: info.residual, row_sums }))
 }

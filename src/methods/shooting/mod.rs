@@ -1,5 +1,4 @@
-//! Shooting: progressive refinement, and redistribution of energy already shot when the scene changes
-//! [GSG90; eqs. 4 to 6].
+//! Shooting: progressive refinement, and redistribution of energy already shot when the scene changes.
 //!
 //! Patches shoot, elements receive. All bookkeeping is in power (W per band), not in radiosity: the power `P` that
 //! has arrived at each element, and the power `Q` that each patch has shot, kept apart by the *version* of the
@@ -10,7 +9,8 @@
 //! ```
 //!
 //! The last equation holds after every step. An edit makes a new version; to redistribute a patch is to move its
-//! `Q` from an old version to the newest, which adds `(F_new - F_old)^T Q` to `P`. When nothing is left in old
+//! `Q` from an old version to the newest, which adds `(F_new - F_old)^T Q` to `P`: the term of [GSG90 eq. 5], for any
+//! number of changes at once. What it adds is unshot, and is propagated like any other: [GSG90 eq. 6]. When nothing is left in old
 //! versions and nothing is unshot, B solves the radiosity equation of the new scene exactly, whatever happened
 //! before. A change of reflectance or emission takes no redistribution: P stays, B and what is unshot follow.
 //!

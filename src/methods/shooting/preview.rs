@@ -1,4 +1,4 @@
-//! Select, drag, release: a series of changes of one object folds into one removal and one addition [GSG90, fig. 5].
+//! Select, drag, release: a series of changes of one object folds into one removal and one addition [GSG90 fig. 5].
 //!
 //! Selecting removes the object. While it is dragged, what its places bring is kept apart, shown, and forgotten when
 //! it is dragged on. Releasing makes the last place an edit, and what was shot towards it is kept.

@@ -1,7 +1,8 @@
-//! Which shot comes next [GSG90, interleaving redistribution and propagation].
+//! Which shot comes next [GSG90 fig. 4].
 
 use super::row::Row;
 use super::{Shooting, Strategy};
+use crate::methods::MethodInfo;
 
 /// The next shot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,6 +112,25 @@ impl Shooting {
     /// True if no power is left in old versions.
     pub fn is_drained(&self) -> bool {
         self.versions.len() == 1
+    }
+
+    /// How far it has come: shots, and what is unshot relative to what is emitted, in the area-weighted RMS of each band.
+    pub fn info(&self) -> MethodInfo {
+        let bands = self.field.bands;
+        let unshot = self.unshot();
+        let norm = |values: &[f64], c: usize| {
+            let patches = self.stage.patches.iter().enumerate();
+            patches.map(|(i, p)| p.area * values[i * bands + c].powi(2)).sum::<f64>().sqrt()
+        };
+        let residual = |c: usize| match norm(&self.vectors.emission, c) {
+            0.0 => norm(&unshot.values, c),
+            emitted => norm(&unshot.values, c) / emitted,
+        };
+        MethodInfo {
+            iterations: vec![self.costs.shots as usize; bands],
+            residual: (0..bands).map(residual).collect(),
+            row_sums: None,
+        }
     }
 
     /// Bound on what unshot power may still bring, as a share of all luminous power: unshot / (1 - rho). Says nothing of

@@ -34,7 +34,8 @@ pub struct Costs {
     pub rays: u64,
     /// Receivers that shots changed, added up.
     pub receivers: u64,
-    /// Seconds of computing, callbacks left out.
+    /// Seconds of computing: of shots, and of finding out what an edit touches. Callbacks are left out, and the laying
+    /// out of scenes and the opening of kernels, which every method needs.
     pub seconds: f64,
 }
 
@@ -89,7 +90,41 @@ impl Shooting {
         if !scene.lights.is_empty() {
             return Err(ShootingError::PointLights(scene.lights.len()));
         }
-        let stage = scene.at(state)?;
+        Self::begin(scene.clone(), state, scene.at(state)?, params, kernel, seed)
+    }
+
+    /// A solver on a stage that comes without its scene: nothing in it can be edited.
+    ///
+    /// # Errors
+    /// As [`Shooting::open`].
+    pub fn on(stage: Stage, params: Params, kernel: KernelKind, seed: u64) -> Result<Self, ShootingError> {
+        if !stage.lights.is_empty() {
+            return Err(ShootingError::PointLights(stage.lights.len()));
+        }
+        let scene = Scene {
+            name: stage.name.clone(),
+            photometry: stage.photometry.clone(),
+            enclosure: stage.enclosure,
+            materials: stage.materials.clone(),
+            surfaces: Vec::new(),
+            absent: Vec::new(),
+            edits: Vec::new(),
+            cameras: Vec::new(),
+            lights: Vec::new(),
+            receivers: Vec::new(),
+            notices: Vec::new(),
+        };
+        Self::begin(scene, 0, stage, params, kernel, seed)
+    }
+
+    fn begin(
+        scene: Scene,
+        state: usize,
+        stage: Stage,
+        params: Params,
+        kernel: KernelKind,
+        seed: u64,
+    ) -> Result<Self, ShootingError> {
         let enclosure = stage.enclosure.unwrap_or_else(|| {
             let exact: Arc<dyn RayKernel> = Arc::new(BuiltinKernel::new(&stage));
             is_closed(&stage, &exact)
@@ -113,7 +148,7 @@ impl Shooting {
         let field = Field::dark(&stage, channels);
         let values = stage.patch_count() * field.width();
         let mut solver = Self {
-            scene: scene.clone(),
+            scene,
             state,
             kernel,
             enclosure,
@@ -203,7 +238,6 @@ impl Shooting {
 
     /// Goes on to a later state of the scene.
     fn advance(&mut self, state: usize) -> Result<(), ShootingError> {
-        let begin = std::time::Instant::now();
         let stage = self.checked_stage(&self.scene, state)?;
         let edits = &self.scene.edits[self.state..state];
         let words: Vec<String> = edits.iter().map(|e| describe(e, &stage.materials)).collect();
@@ -211,10 +245,11 @@ impl Shooting {
             self.repaint(stage);
         } else {
             let geometry = Arc::new(Geometry::open(stage, self.kernel, self.enclosure)?);
+            let begin = std::time::Instant::now();
             self.rebuild(geometry, state, &words);
+            self.costs.seconds += begin.elapsed().as_secs_f64();
         }
         self.state = state;
-        self.costs.seconds += begin.elapsed().as_secs_f64();
         Ok(())
     }
 
@@ -388,7 +423,7 @@ impl Shooting {
         self.refresh_one(i);
     }
 
-    /// Redistributes what patch i has shot in an old version.
+    /// Redistributes what patch i has shot in an old version [GSG90 fig. 2].
     pub(super) fn redistribute(&mut self, version: usize, i: usize) -> usize {
         let row = self.difference(version, i);
         let (width, last) = (self.field.width(), self.versions.len() - 1);

@@ -1,12 +1,12 @@
 //! Running methods through the states of a scene.
 
 use super::Entry;
-use crate::methods::{Method, MethodError};
+use crate::methods::{Method, MethodError, shooting};
 use crate::raycast::{KernelError, KernelKind};
 use crate::reference::{Progress, ReferenceError, check_size};
 use crate::scene::{Scene, Stage};
 use crate::solution::{Series, Snapshot};
-use crate::study::{Session, SolveRequest, solve};
+use crate::study::{Course, Moments, Session, ShootRequest, SolveRequest, shoot, solve};
 use std::time::Instant;
 
 /// What every method of a run shares.
@@ -45,6 +45,8 @@ pub fn run_method(run: &Run, entry: &Entry, progress: &dyn Progress) -> Result<V
     let series = |method: &Method| {
         let snapshots = match method {
             Method::Gather(_) | Method::Hemicube(_) => from_scratch(run, *method, progress)?,
+            Method::Progressive(p) => shot_by_shot(run, Course::FromScratch, *p, progress)?,
+            Method::Redistribution(p) => shot_by_shot(run, Course::Redistribution, *p, progress)?,
         };
         Ok(Series { name: entry.name.clone(), snapshots })
     };
@@ -70,6 +72,31 @@ fn from_scratch(run: &Run, method: Method, progress: &dyn Progress) -> Result<Ve
     Ok(snapshots)
 }
 
+/// A method that shoots, with a snapshot at every moment of a curve.
+fn shot_by_shot(
+    run: &Run,
+    course: Course,
+    params: shooting::Params,
+    progress: &dyn Progress,
+) -> Result<Vec<Snapshot>, RunError> {
+    // From scratch each state is a run of its own; with redistribution the last one goes through them all.
+    let ends: &[Stage] = match course {
+        Course::FromScratch => run.stages,
+        Course::Redistribution => &run.stages[run.stages.len().saturating_sub(1)..],
+    };
+    let mut snapshots: Vec<Snapshot> = Vec::new();
+    for end in ends {
+        let (shots, rays, seconds) = snapshots.last().map_or((0, 0, 0.0), |s| (s.shots, s.rays, s.seconds));
+        let request =
+            ShootRequest { scene: run.scene, course, last: end.state, params, kernel: run.kernel, seed: run.seed };
+        shoot(&request, &Moments::default(), progress, &mut |s| {
+            snapshots.push(Snapshot { shots: shots + s.shots, rays: rays + s.rays, seconds: seconds + s.seconds, ..s });
+            Ok::<(), MethodError>(())
+        })?;
+    }
+    Ok(snapshots)
+}
+
 /// Rays that a solve of this stage casts.
 fn rays_of(method: &Method, stage: &Stage) -> u64 {
     let present = stage.patches.iter().filter(|p| p.is_present()).count() as u64;
@@ -78,6 +105,6 @@ fn rays_of(method: &Method, stage: &Stage) -> u64 {
             let plan = p.plan();
             present * plan.rays_per_randomisation() * u64::from(plan.randomisations)
         }
-        Method::Hemicube(_) => 0,
+        Method::Hemicube(_) | Method::Progressive(_) | Method::Redistribution(_) => 0,
     }
 }
