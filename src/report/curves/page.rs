@@ -175,7 +175,13 @@ fn reached_table(report: &CurvesReport, edit: usize, clock: bool) -> Table {
         }
         row
     };
-    let rows = report.digest.reached.iter().filter(|r| r.edit == edit && !shown.is_empty()).map(row).collect();
+    let rows = report
+        .digest
+        .reached
+        .iter()
+        .filter(|r| r.edit == edit && shown.iter().any(|(k, _)| r.costs[*k].is_some()))
+        .map(row)
+        .collect();
     let caption = "At or before; in brackets with confidence. \u{201c}Times fewer\u{201d}: the cost of the first \
                    method over that of this one.";
     Table { title: "What it takes".into(), caption: caption.into(), head, rows }

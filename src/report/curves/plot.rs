@@ -168,7 +168,8 @@ fn dashes(line: &PlotLine) -> &'static str {
 
 /// Band, fit, line, bars and marks of one curve.
 fn draw(line: &PlotLine, f: &Frame, out: &mut String) {
-    let mut points: Vec<&Point> = line.points.iter().filter(|p| p.error.value > 0.0).collect();
+    // An error of 0, its noise taken out, stands at the lower end: its interval still says something.
+    let mut points: Vec<&Point> = line.points.iter().filter(|p| p.error.high > 0.0).collect();
     points.sort_by(|a, b| a.x.total_cmp(&b.x));
     let x = |p: &Point| if p.x > 0.0 { f.x.place(p.x) } else { f.gutter.unwrap_or(f.x.from) };
     // What reaches to 0 or below ends at the axis.

@@ -33,9 +33,13 @@ pub fn convergence_text(report: &CurvesReport) -> String {
 fn levels(report: &CurvesReport, method: &str, edit: usize, metric: Metric) -> String {
     let rows = report.digest.reached.iter().filter(|r| r.method == method && r.edit == edit && r.metric == metric);
     let line = |r: &crate::study::converge::ReachedRow| {
-        let known = Axis::ALL.iter().zip(&r.costs).filter_map(|(a, c)| c.map(|c| (a, c)));
-        let reached: Vec<String> =
-            known.filter(|(_, c)| c.by_value.is_some()).map(|(a, c)| format!("{} {}", cost(c, *a), a.name())).collect();
+        let known = Axis::ALL.into_iter().zip(&r.costs).filter_map(|(a, c)| c.map(|c| (a, c)));
+        let text = |(a, c): (Axis, crate::metrics::Reached)| {
+            // Seconds bring their unit.
+            let unit = if a.is_clock() { String::new() } else { format!(" {}", a.name()) };
+            format!("{}{unit}", cost(c, a))
+        };
+        let reached: Vec<String> = known.filter(|(_, c)| c.by_value.is_some()).map(text).collect();
         let reached = if reached.is_empty() { "not reached".into() } else { reached.join(", ") };
         format!("      {:>4}: {reached}\n", percent_exact(r.level))
     };
