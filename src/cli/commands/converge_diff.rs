@@ -19,8 +19,11 @@ pub fn run(args: &ConvergeDiffArgs, console: &Console) -> Result<u8, Failure> {
     let curves = [read(&args.first)?, read(&args.second)?];
     let differences = diff(&curves[0], &curves[1]);
     if differences.is_empty() {
-        let name = |c: &Curve| format!("{} (edit {})", c.method, c.edit);
-        let list = |run: &[Curve]| run.iter().map(name).collect::<Vec<_>>().join("; ");
+        let list = |run: &[Curve]| {
+            let mut names: Vec<&str> = run.iter().map(|c| c.method.as_str()).collect();
+            names.dedup();
+            names.join("; ")
+        };
         return Err(Failure::input(format!(
             "{} and {} have no curve in common that can be compared: the first has {}, the second {}; run both with \
              a method and a state of the same name",

@@ -18,6 +18,8 @@ const GUTTER: f64 = 46.0;
 const LEGEND: f64 = 21.0;
 /// Beyond so many points a curve is drawn without bars, and with small marks.
 const CROWD: usize = 40;
+/// A noise floor so many times below the least error is not drawn to scale.
+const FAR_BELOW: f64 = 50.0;
 /// Letters of a name in the legend.
 const LETTERS: usize = 76;
 /// Colours that stay apart for colour-blind readers [Okabe & Ito 2008].
@@ -92,7 +94,10 @@ impl Plot {
         // An interval may reach far down: it is cut where it would press the curve together.
         let deep = |p: &Point| p.error.low.max(0.3 * p.error.value);
         let ends = points().flat_map(|p| [p.error.value, deep(p), p.error.high.min(3.0 * p.error.value)]);
-        let y = LogAxis::over(ends.chain(self.floor), HEIGHT - BOTTOM, TOP)?;
+        // A floor far below every error would press the curves together: it is named at the lower end.
+        let least = points().map(|p| p.error.value).filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
+        let floor = self.floor.filter(|f| *f * FAR_BELOW >= least);
+        let y = LogAxis::over(ends.chain(floor), HEIGHT - BOTTOM, TOP)?;
         Some(Frame { x, y, gutter: at_no_cost.then_some(LEFT + 0.4 * GUTTER) })
     }
 
@@ -142,11 +147,12 @@ impl Plot {
     fn floor(&self, f: &Frame, out: &mut String) {
         let Some(floor) = self.floor.filter(|v| *v > 0.0) else { return };
         let (y, right) = (f.y.place(floor), WIDTH - RIGHT);
+        let below = if floor < f.y.low { " (below)" } else { "" };
         let _ = writeln!(
             out,
             "<path d=\"M{LEFT} {y:.1}H{right}\" stroke=\"#5b636b\" stroke-width=\"1.4\" stroke-dasharray=\"7 5\"/>\n\
              <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#5b636b\" font-size=\"11.5\" stroke=\"#ffffff\" \
-             stroke-width=\"3\" paint-order=\"stroke\">noise of the reference: {}</text>",
+             stroke-width=\"3\" paint-order=\"stroke\">noise of the reference: {}{below}</text>",
             right - 6.0,
             y - 5.0,
             crate::report::format::percent(floor)
@@ -253,7 +259,8 @@ fn legend(line: &PlotLine, y: f64, out: &mut String) {
 /// A slope with its interval: `-1.02 (-1.10 to -0.94)`.
 pub(super) fn slope_text(rate: &Rate) -> String {
     let s = &rate.slope;
-    format!("{:.2} ({:.2} to {:.2})", s.value, s.low, s.high).replace('-', "\u{2212}")
+    let places = if s.high - s.low < 0.02 { 4 } else { 2 };
+    format!("{:.places$} ({:.places$} to {:.places$})", s.value, s.low, s.high).replace('-', "\u{2212}")
 }
 
 /// Text that cannot be markup.
