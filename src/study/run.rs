@@ -144,7 +144,11 @@ pub fn solve(session: &Session, request: &SolveRequest, progress: &dyn Progress)
     Ok(SolveOutcome { radiosity, info, form_factors: Some(form_factors) })
 }
 
-fn progressive(session: &Session, params: shooting::Params, request: &SolveRequest) -> Result<SolveOutcome, MethodError> {
+fn progressive(
+    session: &Session,
+    params: shooting::Params,
+    request: &SolveRequest,
+) -> Result<SolveOutcome, MethodError> {
     let mut solver = Shooting::on(session.stage().clone(), params, session.kind(), request.seed)?;
     solver.converge();
     let radiosity = if request.per_element { solver.element_radiosity() } else { solver.radiosity() };

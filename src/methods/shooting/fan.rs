@@ -31,14 +31,39 @@ pub(super) fn back_sink(stage: &Stage) -> usize {
     stage.elements.len() + BACK_SINK
 }
 
-/// The rays of all patches: one net, shifted and turned for each.
+/// The rays of all patches, shifted and turned for each: of one net, and of a longer one for lamps.
 pub(super) struct Fans {
-    net: Net,
     shifts: Stream,
-    /// Local directions of each batch of the net.
+    common: Quiver,
+    /// The net of lamps, where they shoot more rays than others.
+    lamps: Option<Quiver>,
+    /// Patches that shoot along it.
+    is_lamp: Vec<bool>,
+}
+
+/// A net, cut into batches.
+struct Quiver {
+    net: Net,
+    /// Local directions of each batch.
     batches: Vec<Directions>,
     /// Rays of one randomisation.
-    pub rays: u64,
+    rays: u64,
+}
+
+impl Quiver {
+    fn new(stream: Stream, randomisations: u16, rays: u64) -> Self {
+        let net = Net::new(stream, randomisations, 0, rays);
+        let batch = |first: usize| {
+            let range = first..(first + BATCH).min(net.len());
+            Directions::of(&range.map(|k| net.direction.each_ref().map(|c| f64::from(c[k]))))
+        };
+        Self { batches: (0..net.len()).step_by(BATCH).map(batch).collect(), rays, net }
+    }
+
+    fn fill(&self, rays: &mut RayBatch, batch: usize, emitter: &Emitter, shift: Stream) {
+        rays.resize(BATCH.min(self.net.len() - batch * BATCH));
+        fill(rays, &self.net, batch * BATCH, emitter, shift);
+    }
 }
 
 /// Working memory of one thread.
@@ -59,34 +84,41 @@ struct Diverted {
 }
 
 impl Fans {
-    /// The candidate's rays under a seed: `rays` of each randomisation.
-    pub fn new(rays: u64, randomisations: u16, seed: u64) -> Self {
+    /// The candidate's rays under a seed: `rays` of each randomisation, `boost` times as many for lamps. Which patches are
+    /// lamps is settled once, for the rays of a patch must not change with an edit.
+    pub fn new(rays: u64, randomisations: u16, seed: u64, boost: u32, is_lamp: Vec<bool>) -> Self {
         let stream = Stream::new(Role::Candidate, seed);
-        let net = Net::new(stream.child(0), randomisations, 0, rays);
-        let batch = |first: usize| {
-            let range = first..(first + BATCH).min(net.len());
-            Directions::of(&range.map(|k| net.direction.each_ref().map(|c| f64::from(c[k]))))
-        };
-        let batches = (0..net.len()).step_by(BATCH).map(batch).collect();
-        Self { shifts: stream.child(1), batches, rays, net }
+        let quiver = |rays| Quiver::new(stream.child(0), randomisations, rays);
+        let lamps = (boost > 1 && is_lamp.contains(&true)).then(|| quiver(rays * u64::from(boost)));
+        Self { shifts: stream.child(1), common: quiver(rays), lamps, is_lamp }
+    }
+
+    fn of(&self, patch: usize) -> &Quiver {
+        self.lamps.as_ref().filter(|_| self.is_lamp[patch]).unwrap_or(&self.common)
+    }
+
+    /// Rays of one randomisation of a patch.
+    pub fn rays(&self, patch: usize) -> u64 {
+        self.of(patch).rays
     }
 
     /// Counts where all rays of a patch end, `by` each. Returns the number of rays traced.
     pub fn whole(&self, g: &Geometry, patch: usize, by: i32, counter: &mut Counter) -> u64 {
         let Some(emitter) = &g.emitters[patch] else { return 0 };
-        let shift = self.shifts.child(emitter.key);
+        let (quiver, shift) = (self.of(patch), self.shifts.child(emitter.key));
         let landed = |s: &mut Scratch, batch: usize| {
-            self.fill(&mut s.rays, batch, emitter, shift);
+            quiver.fill(&mut s.rays, batch, emitter, shift);
             s.landings.resize(s.rays.len(), 0);
             g.tracer.trace(&s.rays, &mut s.landings, &mut s.trace);
             (0..s.rays.len()).map(|k| sink(g, s.landings[k], &s.rays, k)).collect::<Vec<u32>>()
         };
-        let ends: Vec<Vec<u32>> = (0..self.batches.len()).into_par_iter().map_init(Scratch::default, landed).collect();
+        let ends: Vec<Vec<u32>> =
+            (0..quiver.batches.len()).into_par_iter().map_init(Scratch::default, landed).collect();
         for (batch, ends) in ends.iter().enumerate() {
-            let randomisation = &self.net.randomisation[batch * BATCH..][..ends.len()];
+            let randomisation = &quiver.net.randomisation[batch * BATCH..][..ends.len()];
             ends.iter().zip(randomisation).for_each(|(e, r)| counter.add(*e, *r, by));
         }
-        self.net.len() as u64
+        quiver.net.len() as u64
     }
 
     /// Counts the rays of a patch that a change has diverted: -1 where they ended, +1 where they end now. The patch's own
@@ -94,10 +126,10 @@ impl Fans {
     pub fn diverted(&self, [old, new]: [&Geometry; 2], change: &Change, patch: usize, counter: &mut Counter) -> u64 {
         let (Some(from), Some(to)) = (&old.emitters[patch], &new.emitters[patch]) else { return 0 };
         let batches = self.within_shadow(old, change, patch);
-        let shift = self.shifts.child(from.key);
+        let (quiver, shift) = (self.of(patch), self.shifts.child(from.key));
         let look = |s: &mut Scratch, batch: &usize| {
-            self.fill(&mut s.rays, *batch, from, shift);
-            let randomisation = &self.net.randomisation[batch * BATCH..];
+            quiver.fill(&mut s.rays, *batch, from, shift);
+            let randomisation = &quiver.net.randomisation[batch * BATCH..];
             Looking { old, new, change, facets: [from.facet, to.facet] }.look(s, randomisation)
         };
         let found: Vec<(Vec<Diverted>, u64)> = batches.par_iter().map_init(Scratch::default, look).collect();
@@ -124,12 +156,8 @@ impl Fans {
         let corners = &g.stage.patches[patch].corners;
         let towards: Vec<Directions> =
             change.outlines.iter().flatten().filter_map(|o| Directions::towards(o, corners, &frame)).collect();
-        (0..self.batches.len()).filter(|k| towards.iter().any(|t| t.meet(&self.batches[*k]))).collect()
-    }
-
-    fn fill(&self, rays: &mut RayBatch, batch: usize, emitter: &Emitter, shift: Stream) {
-        rays.resize(BATCH.min(self.net.len() - batch * BATCH));
-        fill(rays, &self.net, batch * BATCH, emitter, shift);
+        let batches = &self.of(patch).batches;
+        (0..batches.len()).filter(|k| towards.iter().any(|t| t.meet(&batches[*k]))).collect()
     }
 }
 

@@ -55,6 +55,8 @@ pub enum Ranking {
 pub struct Params {
     /// Form factors.
     pub factors: Factors,
+    /// Patches that emit shoot so many times the rays of others: direct light is most of the error that is seen.
+    pub lamps: u32,
     /// When to stop.
     pub stop: Stop,
     /// Whether the ambient estimate is added to what is written: for pictures.
@@ -74,6 +76,7 @@ impl Default for Params {
         let plan = Plan::default();
         Self {
             factors: Factors::Rays { rays: plan.rays, randomisations: plan.randomisations },
+            lamps: 16,
             stop: Stop { unshot: 1e-3, shots: None, seconds: None, error: None },
             ambient: false,
             strategy: Strategy::One,
@@ -84,7 +87,7 @@ impl Default for Params {
     }
 }
 
-const PROGRESSIVE: &str = "rays=N, randomisations=R (8 to 4096), factors=rays|hemicube, resolution=N, delta=midpoint|exact, \
+const PROGRESSIVE: &str = "rays=N, randomisations=R (8 to 4096), lamps=N (1 to 1024: times the rays of others), factors=rays|hemicube, resolution=N, delta=midpoint|exact, \
     rotation=DEGREES, unshot=F, shots=N, seconds=S, error=F, ambient=yes|no";
 const REDISTRIBUTION: &str = ", strategy=one|two, threshold=F, samples=N (1 to 64), ranking=samples|exact, before=F \
     (share unshot when an edit comes)";
@@ -137,6 +140,7 @@ impl Params {
             ("randomisations", Factors::Rays { randomisations, .. }) => {
                 *randomisations = value.parse().ok().filter(|r| (8..=4096).contains(r))?;
             }
+            ("lamps", _) => self.lamps = value.parse().ok().filter(|n| (1..=1024).contains(n))?,
             ("unshot", _) => self.stop.unshot = fraction(value)?,
             ("shots", _) => self.stop.shots = Some(value.parse().ok()?),
             ("seconds", _) => {
@@ -177,6 +181,7 @@ impl Params {
                 format!("factors=hemicube,resolution={resolution},delta={delta},rotation={rotation}")
             }
         }];
+        parts.extend((self.lamps != default.lamps).then(|| format!("lamps={}", self.lamps)));
         parts.push(format!("unshot={}", self.stop.unshot));
         parts.extend(self.stop.shots.map(|n| format!("shots={n}")));
         parts.extend(self.stop.seconds.map(|s| format!("seconds={s}")));
@@ -223,7 +228,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_back_and_nonsense_refused() {
-        let all = "rays=4096,randomisations=32,unshot=1%,shots=7,seconds=2.5,error=0.5%,ambient=yes,strategy=two,\
+        let all = "rays=4096,randomisations=32,lamps=4,unshot=1%,shots=7,seconds=2.5,error=0.5%,ambient=yes,strategy=two,\
                    threshold=2%,samples=7,before=0";
         let p = Params::redistribution(all).unwrap();
         assert_eq!(Params::redistribution(&p.to_string()).unwrap(), p);

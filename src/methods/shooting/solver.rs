@@ -365,7 +365,7 @@ impl Shooting {
             Caster::Rays(rays) => {
                 let (fans, counter) = &mut **rays;
                 self.costs.rays += fans.whole(g, patch, 1, counter);
-                counter.take(fans.rays)
+                counter.take(fans.rays(patch))
             }
             Caster::Hemicube(table, params) => hemicube_row(g, patch, table, params),
         }
@@ -389,7 +389,7 @@ impl Shooting {
                 } else {
                     fans.diverted([old, new], change, patch, counter)
                 };
-                counter.take(fans.rays)
+                counter.take(fans.rays(patch))
             }
             (Caster::Hemicube(table, params), Some(_)) => {
                 let (before, after) =
@@ -565,6 +565,17 @@ impl Shooting {
     pub(super) fn luminous(&self, power: &[f64]) -> f64 {
         luminous(&self.stage.photometry.weights, power)
     }
+}
+
+/// Patches that emit in some state of the scene.
+fn lamps(scene: &Scene, stage: &Stage) -> Vec<bool> {
+    let mut shines: Vec<bool> = stage.materials.iter().map(|m| m.emission.iter().any(|e| *e > 0.0)).collect();
+    for edit in &scene.edits {
+        if let Edit::Material { material, emission: Some(e), .. } = edit {
+            shines[*material as usize] |= e.iter().any(|e| *e > 0.0);
+        }
+    }
+    stage.patches.iter().map(|p| shines[p.material as usize]).collect()
 }
 
 fn luminous(weights: &[f64], power: &[f64]) -> f64 {
