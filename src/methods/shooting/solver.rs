@@ -135,10 +135,8 @@ impl Shooting {
             Factors::Rays { rays, randomisations } => {
                 let each = Plan { rays, randomisations, ..Plan::default() }.rays_per_randomisation();
                 let counter = Counter::new(sinks(&stage), randomisations);
-                (
-                    Caster::Rays(Box::new((Fans::new(each, randomisations, seed), counter))),
-                    usize::from(randomisations) + 1,
-                )
+                let fans = Fans::new(each, randomisations, seed, params.lamps, lamps(&scene, &stage));
+                (Caster::Rays(Box::new((fans, counter))), usize::from(randomisations) + 1)
             }
             Factors::Hemicube(p) => {
                 let p = p.validated()?;
