@@ -38,6 +38,9 @@ pub struct ConvergeArgs {
     /// Confidence of the intervals, two-sided.
     #[arg(long, default_value = "0.95", value_name = "C", allow_hyphen_values = true)]
     pub confidence: Fraction,
+    /// Pictures of every method after these numbers of shots since the edit, beside the references.
+    #[arg(long, value_name = "N,N", value_delimiter = ',', conflicts_with = "refine")]
+    pub pictures: Vec<u64>,
     /// Metrics on B - E instead of B.
     #[arg(long)]
     pub reflected: bool,

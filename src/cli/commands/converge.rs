@@ -8,10 +8,14 @@ use crate::cli::exit::{self, Failure};
 use crate::io::{FileError, StoredReference, atomic, read_series};
 use crate::methods::MethodError;
 use crate::reference::Options;
-use crate::report::curves::{CURVES_PAGE, CurvesReport, convergence_files, convergence_json, convergence_text};
+use crate::render::views;
+use crate::report::curves::{
+    CURVES_PAGE, CurvesReport, Pictures, Shown, convergence_files, convergence_json, convergence_text, pictures,
+};
 use crate::report::{Phase, save};
 use crate::scene::Stage;
 use crate::solution::Series;
+use crate::study::Session;
 use crate::study::converge::{
     Entry, EntryError, JudgedState, RefineError, Run, RunError, digest, join, judge_series, parse_methods, run_method,
 };
@@ -75,11 +79,42 @@ pub fn run(args: &ConvergeArgs, kernel: Kernel, console: &Console) -> Result<u8,
     timing.push(Phase { name: "judging".into(), seconds: begin.elapsed().as_secs_f64() });
     let curves = join(curves);
     let digest = digest(&curves, args.confidence.0);
+    let pictures = painted(&asked, &stages, &references, &own)?;
     let about = converge_told::about(&asked, &scene.name, references.iter().flatten(), timing);
-    let report = CurvesReport { about, curves, digest };
+    let report = CurvesReport { about, curves, digest, pictures };
     save(&args.output, &convergence_files(&report)?)?;
     tell(&args.output, &convergence_text(&report), convergence_json(&report), console);
     Ok(exit::DONE)
+}
+
+/// Pictures through the first camera, of the state without edits or of every state after one.
+fn painted(
+    asked: &Asked,
+    stages: &[Stage],
+    references: &[Option<StoredReference>],
+    series: &[Series],
+) -> Result<Vec<Pictures>, Failure> {
+    if asked.args.pictures.is_empty() {
+        return Ok(Vec::new());
+    }
+    let kernel = inputs::kernel_kind(asked.kernel);
+    let mut seen = Vec::new();
+    for (stage, reference) in stages.iter().zip(references) {
+        let view = views(&Session::open(stage, kernel)?.tracer()).into_iter().next();
+        seen.push(reference.as_ref().zip(view).map(|(r, view)| (r.patches.mean(), view)));
+    }
+    let shown = |k: usize| {
+        let (reference, view) = seen.get(k)?.as_ref()?;
+        Some(Shown { stage: &stages[k], reference, view })
+    };
+    let first = usize::from(stages.len() > 1);
+    let mut all = Vec::new();
+    for k in first..stages.len() {
+        if let Some(now) = shown(k) {
+            all.push(pictures(now, k.checked_sub(1).and_then(shown), series, &asked.args.pictures)?);
+        }
+    }
+    Ok(all)
 }
 
 /// Prints the summary and where the page is.

@@ -3,6 +3,7 @@
 mod axis;
 mod figures;
 mod page;
+mod pictures;
 mod plot;
 mod summary;
 mod table;
@@ -12,6 +13,7 @@ mod testing;
 mod tests;
 mod words;
 
+pub use pictures::{Picture, Pictures, Shown, pictures};
 pub use summary::{convergence_json, convergence_text, difference_json, difference_text, mesh_json, mesh_text};
 pub use table::read_curves;
 
@@ -52,6 +54,8 @@ pub struct CurvesReport {
     pub curves: Vec<Curve>,
     /// What is read off them.
     pub digest: Digest,
+    /// Pictures on the way, by state.
+    pub pictures: Vec<Pictures>,
 }
 
 /// Errors against the size of the mesh.
@@ -87,7 +91,10 @@ pub fn convergence_files(report: &CurvesReport) -> Result<Vec<Artifact>, ReportE
         Artifact::new("rates.csv", table::rates(&report.digest)),
         Artifact::new("reached.csv", table::reached(&report.digest)),
     ];
-    files(&report.about, tables, &figures, page::of_curves(report, &figures)?)
+    let mut all = files(&report.about, tables, &figures, page::of_curves(report, &figures)?)?;
+    let pictures = report.pictures.iter().flat_map(|p| p.rows.iter().flatten());
+    all.extend(pictures.map(|p| Artifact::new(p.file.clone(), p.png.clone())));
+    Ok(all)
 }
 
 /// The folder of a refinement.

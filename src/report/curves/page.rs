@@ -39,6 +39,8 @@ struct Section<'a> {
     title: String,
     figures: Vec<&'a str>,
     tables: Vec<Table>,
+    /// Rows of (picture, caption).
+    pictures: Vec<Vec<(String, &'a str)>>,
 }
 
 #[derive(Debug, Default, Serialize)]
@@ -146,6 +148,7 @@ pub(super) fn of_curves(report: &CurvesReport, figures: &[Drawing]) -> Result<St
             title: state_name(edit, last),
             figures: drawn(figures, edit, clock),
             tables: vec![reached_table(report, edit, clock), rates_table(report, edit, clock)],
+            pictures: if clock { Vec::new() } else { shown(report, edit) },
         };
         let (costs, clock) = (section(false), section(true));
         page.sections.extend(Some(costs).filter(|s| !s.is_empty()));
@@ -153,6 +156,11 @@ pub(super) fn of_curves(report: &CurvesReport, figures: &[Drawing]) -> Result<St
     }
     page.read = reading(&report.about);
     render(&page)
+}
+
+fn shown(report: &CurvesReport, edit: usize) -> Vec<Vec<(String, &str)>> {
+    let rows = report.pictures.iter().filter(|p| p.edit == edit).flat_map(|p| &p.rows);
+    rows.map(|row| row.iter().map(|p| (p.inline(), p.caption.as_str())).collect()).collect()
 }
 
 /// Columns of the costs that are shown: those of the clock, or the others.
@@ -240,8 +248,12 @@ pub(super) fn of_meshes(report: &MeshReport, figures: &[Drawing]) -> Result<Stri
         head: headed(&["method", "order", "meshes"]),
         rows: report.curves.iter().map(order).collect(),
     };
-    page.sections =
-        vec![Section { title: "Meshes".into(), figures: drawn(figures, 0, false), tables: vec![meshes, orders] }];
+    page.sections = vec![Section {
+        title: "Meshes".into(),
+        figures: drawn(figures, 0, false),
+        tables: vec![meshes, orders],
+        ..Section::default()
+    }];
     page.read =
         reading(&report.about).into_iter().filter(|(t, _)| !["Reached", "Since the edit"].contains(t)).collect();
     render(&page)
@@ -259,6 +271,7 @@ pub(super) fn of_difference(report: &DifferenceReport, figures: &[Drawing]) -> R
             title: state_name(edit, last),
             figures: drawn(figures, edit, clock),
             tables: vec![difference_table(report, edit, clock)],
+            ..Section::default()
         };
         let (costs, clock) = (section(false), section(true));
         page.sections.extend(Some(costs).filter(|s| !s.is_empty()));

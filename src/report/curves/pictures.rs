@@ -1,0 +1,102 @@
+//! Pictures of solutions on their way, beside the references [GSG90 fig. 6].
+
+use crate::io::image::png;
+use crate::render::{Exposure, Mesh, Stencils, View, luminance, paint_smooth, vertex_colours};
+use crate::report::ReportError;
+use crate::report::format::count;
+use crate::scene::Stage;
+use crate::solution::{Radiosity, Series, Snapshot};
+use base64::Engine;
+
+/// Pictures of one state through one camera.
+#[derive(Debug, Clone)]
+pub struct Pictures {
+    /// The state.
+    pub edit: usize,
+    /// Rows of pictures: the references, then one row for each number of shots.
+    pub rows: Vec<Vec<Picture>>,
+}
+
+/// One picture.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    /// What is shown.
+    pub caption: String,
+    /// File name in the folder of the run.
+    pub file: String,
+    /// The file.
+    pub png: Vec<u8>,
+}
+
+impl Picture {
+    /// As an address that a page can hold.
+    pub(super) fn inline(&self) -> String {
+        format!("data:image/png;base64,{}", base64::engine::general_purpose::STANDARD.encode(&self.png))
+    }
+}
+
+/// A state with its reference and what a camera sees of it.
+#[derive(Clone, Copy)]
+pub struct Shown<'a> {
+    /// The state.
+    pub stage: &'a Stage,
+    /// Mean of the reference, per patch.
+    pub reference: &'a Radiosity,
+    /// The camera.
+    pub view: &'a View,
+}
+
+/// Pictures of a state, of the state before it if there is one, and of every series after each number of shots since
+/// the edit: the last snapshot not after it. All with the exposure that suits the reference.
+///
+/// # Errors
+/// [`ReportError`] where a picture cannot be written.
+pub fn pictures(now: Shown, before: Option<Shown>, series: &[Series], shots: &[u64]) -> Result<Pictures, ReportError> {
+    let stage = now.stage;
+    let is_lamp: Vec<bool> = (0..stage.patch_count()).map(|i| stage.emission(i).iter().any(|e| *e > 0.0)).collect();
+    let bright = luminance(&stage.photometry, now.reference);
+    let exposure = Exposure::fit(&stage.photometry, &bright, &stage.areas(), &is_lamp);
+    let mut rows = vec![Vec::new()];
+    if let Some(before) = before {
+        rows[0].push(painted(
+            before,
+            before.reference,
+            &exposure,
+            "Reference before the edit".into(),
+            "reference-before",
+        )?);
+    }
+    rows[0].push(painted(now, now.reference, &exposure, "Reference".into(), "reference")?);
+    for n in shots {
+        let mut row = Vec::new();
+        for (k, series) in series.iter().enumerate() {
+            let Some(snapshot) = after(series, stage.state, *n) else { continue };
+            let caption = format!("{} after {} shots", series.name, count(*n as usize));
+            let stem = format!("method-{}-after-{n}", k + 1);
+            row.push(painted(now, &snapshot.radiosity, &exposure, caption, &stem)?);
+        }
+        rows.push(row);
+    }
+    rows.retain(|r| !r.is_empty());
+    Ok(Pictures { edit: stage.state, rows })
+}
+
+/// The last snapshot of a state with at most `shots` since the edit.
+fn after(series: &Series, edit: usize, shots: u64) -> Option<&Snapshot> {
+    let before = series.snapshots.iter().rfind(|s| s.edit < edit).map_or(0, |s| s.shots);
+    series.snapshots.iter().rfind(|s| s.edit == edit && s.shots <= before + shots)
+}
+
+fn painted(
+    shown: Shown,
+    radiosity: &Radiosity,
+    exposure: &Exposure,
+    caption: String,
+    stem: &str,
+) -> Result<Picture, ReportError> {
+    let mesh = Mesh::of_patches(shown.stage);
+    let raster =
+        paint_smooth(&shown.view.visibility, &mesh, &vertex_colours(&Stencils::of(&mesh), exposure, radiosity));
+    let file = format!("picture-edit-{}-{stem}.png", shown.stage.state);
+    Ok(Picture { caption, file, png: png(raster.width, raster.height, &raster.rgba)? })
+}
