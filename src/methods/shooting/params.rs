@@ -80,7 +80,7 @@ impl Default for Params {
             stop: Stop { unshot: 1e-3, shots: None, seconds: None, error: None },
             ambient: false,
             strategy: Strategy::One,
-            threshold: 1e-3,
+            threshold: 0.0,
             ranking: Ranking::Samples(1),
             before: 1e-3,
         }
