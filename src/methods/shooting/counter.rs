@@ -37,23 +37,22 @@ impl Counter {
         self.counts[s << self.shift | usize::from(randomisation)] += by;
     }
 
-    /// The row of shares: of all rays, then of all rays without those of each randomisation. `rays` are the rays of one
-    /// randomisation. Leaves the counter zero.
+    /// The row of shares: of all rays, and of the rays of each randomisation, of which each has `rays`. Leaves the counter
+    /// zero.
     pub fn take(&mut self, rays: u64) -> Row {
         let r = self.randomisations;
-        let (all, without) = ((rays * r as u64) as f64, (rays * (r as u64 - 1)) as f64);
-        let mut row = Row::new(r + 1);
+        let (one, all) = (rays as f64, (rays * r as u64) as f64);
+        let mut row = Row::default();
         for sink in self.touched.drain(..) {
             let s = sink as usize;
             self.seen[s] = false;
             let counts = &mut self.counts[s << self.shift..][..r];
-            if counts.iter().all(|c| *c == 0) {
-                continue;
+            let hit = counts.iter().enumerate().filter(|(_, c)| **c != 0);
+            let parts = hit.map(|(k, c)| (k as u16 + 1, f64::from(*c) / one));
+            if counts.iter().any(|c| *c != 0) {
+                row.push(sink, f64::from(counts.iter().sum::<i32>()) / all, parts);
+                counts.fill(0);
             }
-            let sum: i32 = counts.iter().sum();
-            let leave_out = counts.iter().map(|c| f64::from(sum - c) / without);
-            row.push(sink, std::iter::once(f64::from(sum) / all).chain(leave_out));
-            counts.fill(0);
         }
         row
     }

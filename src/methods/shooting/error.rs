@@ -48,6 +48,15 @@ pub enum ShootingError {
     /// Something is selected already.
     #[error("\"{0}\" is selected; drop it before another edit")]
     Selected(String),
+    /// Edits that a saved state could not be taken up with.
+    #[error("{0} edits were made that the scene file does not have; a state can be saved only with edits of the file")]
+    Unsaved(usize),
+    /// A saved state of something else.
+    #[error("the saved state belongs to {0}; take it up with what it was saved from, or start anew")]
+    Foreign(&'static str),
+    /// A saved state that cannot be.
+    #[error("the saved state is damaged ({0}); start anew")]
+    Damaged(String),
     /// Nothing is selected.
     #[error("no object is selected")]
     NothingSelected,

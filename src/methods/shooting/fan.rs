@@ -10,6 +10,9 @@ use crate::sampling::{Net, Role, Stream};
 use crate::scene::Stage;
 use rayon::prelude::*;
 
+/// Batches below which one thread does the work.
+const FEW_BATCHES: usize = 16;
+
 /// Places behind the elements where power may go.
 const ESCAPED_SINK: usize = 0;
 const BACK_SINK: usize = 1;
@@ -132,7 +135,13 @@ impl Fans {
             let randomisation = &quiver.net.randomisation[batch * BATCH..];
             Looking { old, new, change, facets: [from.facet, to.facet] }.look(s, randomisation)
         };
-        let found: Vec<(Vec<Diverted>, u64)> = batches.par_iter().map_init(Scratch::default, look).collect();
+        // Most shadows are small: waking other threads would cost more than the rays.
+        let found: Vec<(Vec<Diverted>, u64)> = if batches.len() < FEW_BATCHES {
+            let mut scratch = Scratch::default();
+            batches.iter().map(|batch| look(&mut scratch, batch)).collect()
+        } else {
+            batches.par_iter().map_init(Scratch::default, look).collect()
+        };
         let mut traced = 0;
         for (diverted, rays) in found {
             traced += rays;

@@ -1,10 +1,12 @@
 //! Power that has arrived, per element and per patch.
 
 use super::fan::sinks;
-use super::row::Row;
+use super::row::{Entry, Row};
 use crate::scene::Stage;
 
-/// Power per place, channel and band, W: channel 0 is the mean, the others leave out one randomisation each.
+/// Power per place, channel and band, W. Channel 0 is of all rays. Channel r + 1 is a solution of its own, by the rays of
+/// randomisation r alone and the same shots: the spread of these is the standard error of the first, and a ray costs two
+/// additions, not one for each randomisation.
 #[derive(Debug, Clone)]
 pub(super) struct Field {
     pub channels: usize,
@@ -39,17 +41,12 @@ impl Field {
     /// Adds what a shot brings: `power` has one value per channel and band.
     pub fn add(&mut self, row: &Row, power: &[f64]) {
         let (width, bands) = (self.width(), self.bands);
-        for (sink, factors) in row.iter() {
-            let place = &mut self.elements[sink * width..(sink + 1) * width];
-            let patch = self.owner.get(sink).map(|p| *p as usize * width);
-            for (k, factor) in factors.iter().enumerate() {
-                for c in k * bands..(k + 1) * bands {
-                    let arrives = factor * power[c];
-                    place[c] += arrives;
-                    if let Some(at) = patch {
-                        self.patches[at + c] += arrives;
-                    }
-                }
+        for entry in row.iter() {
+            let place = &mut self.elements[entry.sink * width..][..width];
+            let patch = self.owner.get(entry.sink).map(|p| &mut self.patches[*p as usize * width..][..width]);
+            scatter(place, bands, &entry, power);
+            if let Some(patch) = patch {
+                scatter(patch, bands, &entry, power);
             }
         }
     }
@@ -63,5 +60,17 @@ impl Field {
     /// Mean power of a band at a place behind the elements.
     pub fn at(&self, sink: usize, band: usize) -> f64 {
         self.elements[sink * self.width() + band]
+    }
+}
+
+fn scatter(place: &mut [f64], bands: usize, entry: &Entry, power: &[f64]) {
+    for c in 0..bands {
+        place[c] += entry.mean * power[c];
+    }
+    for (channel, factor) in entry.parts {
+        let first = *channel as usize * bands;
+        for c in first..first + bands {
+            place[c] += factor * power[c];
+        }
     }
 }

@@ -50,6 +50,16 @@ pub enum Ranking {
     Exact,
 }
 
+impl Ranking {
+    /// Sample points of an object; 0 for the exact ranking, which needs none.
+    pub(super) fn samples(self) -> usize {
+        match self {
+            Self::Samples(n) => n as usize,
+            Self::Exact => 0,
+        }
+    }
+}
+
 /// Settings of progressive refinement and redistribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {

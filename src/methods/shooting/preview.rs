@@ -28,6 +28,8 @@ struct Place {
     geometry: Arc<Geometry>,
     change: Change,
     weight: Vec<f64>,
+    /// Patches whose shots it may alter.
+    touched: Vec<bool>,
     /// What it adds to what has arrived.
     field: Field,
     /// Power of each patch that is in `field` already, per channel and band.
@@ -73,10 +75,12 @@ impl Shooting {
         let edits = edits.len() + 1;
         let stage = self.checked_stage(&scene, self.state + edits)?;
         let geometry = Arc::new(self.open_geometry(stage)?);
-        let change = Change::between(&self.newest().geometry, &geometry, 1);
+        let change = Change::between(&self.newest().geometry, &geometry, self.params.ranking.samples());
         let estimate = importance::estimate([&self.newest().geometry, &geometry], &change);
         self.costs.rays += estimate.rays;
-        let shines = |i: &usize| change.came[*i] && geometry.stage.emission(*i).iter().any(|e| *e > 0.0);
+        let touched = (0..change.own.len()).map(|i| self.touches(&self.newest().geometry, &change, i)).collect();
+        let stands = |i: &usize| change.came[*i] && geometry.stage.patches[*i].is_present();
+        let shines = |i: &usize| stands(i) && geometry.stage.emission(*i).iter().any(|e| *e > 0.0);
         let place = Place {
             scene,
             edits,
@@ -84,6 +88,7 @@ impl Shooting {
             geometry,
             change,
             weight: estimate.share,
+            touched,
             field: Field::dark(&self.stage, self.field.channels),
             shot: vec![0.0; self.shot.len()],
         };
@@ -100,7 +105,13 @@ impl Shooting {
     /// Nothing selected.
     pub fn release(&mut self) -> Result<(), ShootingError> {
         let Some(Preview { object, place }) = self.preview.take() else { return Err(ShootingError::NothingSelected) };
-        let Some(place) = place else { return self.apply(Edit::Add { object }) };
+        let Some(place) = place else {
+            let done = self.apply(Edit::Add { object: object.clone() });
+            if done.is_err() {
+                self.preview = Some(Preview { object, place });
+            }
+            return done;
+        };
         let begin = std::time::Instant::now();
         let state = self.state + place.edits;
         let edits = &place.scene.edits[self.state..state];
@@ -122,6 +133,7 @@ impl Shooting {
         }
         self.field.join(&place.field);
         self.scene = place.scene.clone();
+        self.own_edits += place.edits;
         self.rebuild(place.geometry.clone(), state, &words);
         self.state = state;
         let last = self.versions.len() - 1;
@@ -134,28 +146,29 @@ impl Shooting {
         Ok(())
     }
 
-    /// The patch with most to shoot towards the place the object is shown at: its lamps first.
-    pub(super) fn next_preview(&self) -> Option<usize> {
+    /// The patch with most to shoot towards the place the object is shown at: its lamps first. `all` includes those for
+    /// which the estimate says nothing, as they do not see the sample points: they go last.
+    pub(super) fn next_preview(&self, all: bool) -> Option<usize> {
         let place = self.preview.as_ref()?.place.as_ref()?;
         if let Some(lamp) = place.lamps.last() {
             return Some(*lamp);
         }
-        let pending = |i: usize| place.weight[i] * self.luminous(&self.pending(place, i));
-        let rank = |best: Option<(f64, usize)>, i: usize| match (best, pending(i)) {
-            (best, key) if key <= 0.0 || best.is_some_and(|(k, _)| k >= key) => best,
-            (_, key) => Some((key, i)),
+        let rank = |best: Option<([f64; 2], usize)>, i: usize| {
+            let pending = self.pending(place, i);
+            let key = [place.weight[i] * pending, pending];
+            let counts = key[0] > 0.0 || all && pending > 0.0;
+            if counts && best.is_none_or(|(k, _)| key > k) { Some((key, i)) } else { best }
         };
         (0..self.stage.patch_count()).fold(None, rank).map(|(_, i)| i)
     }
 
-    /// Power of patch i, mean channel, that the place does not have yet.
-    fn pending(&self, place: &Place, i: usize) -> Vec<f64> {
-        let (width, bands) = (self.field.width(), self.field.bands);
-        if !self.stage.patches[i].is_present() {
-            return vec![0.0; bands];
+    /// Luminous power of patch i that the place does not have yet, W.
+    fn pending(&self, place: &Place, i: usize) -> f64 {
+        if !place.touched[i] || !self.stage.patches[i].is_present() {
+            return 0.0;
         }
-        let base = &self.newest().shot;
-        (i * width..i * width + bands).map(|at| base[at] - place.shot[at]).collect()
+        let (base, at) = (&self.newest().shot, i * self.field.width());
+        self.weights.iter().enumerate().map(|(c, w)| w * (base[at + c] - place.shot[at + c]).abs()).sum()
     }
 
     /// Shoots all that patch i has for the place.
@@ -164,19 +177,21 @@ impl Shooting {
         let Some(place) = &mut preview.place else { return 0 };
         let width = self.field.width();
         let base = self.newest().geometry.clone();
-        let (row, power) = if place.lamps.pop_if(|lamp| *lamp == i).is_some() {
+        let held = i * width..(i + 1) * width;
+        let row;
+        let power: Vec<f64>;
+        if place.lamps.pop_if(|lamp| *lamp == i).is_some() {
             let (area, emission) = (place.geometry.stage.patches[i].area, place.geometry.stage.emission(i));
-            let power: Vec<f64> = (0..width).map(|c| area * emission[c % emission.len()]).collect();
-            (self.whole(&place.geometry, i), power)
+            power = (0..width).map(|c| area * emission[c % emission.len()]).collect();
+            row = self.whole(&place.geometry, i);
+            place.shot[held].copy_from_slice(&power);
         } else {
-            let held = i * width..(i + 1) * width;
-            let power = held.map(|at| self.newest().shot[at] - place.shot[at]).collect();
-            (self.row_between([&base, &place.geometry], Some(&place.change), i), power)
-        };
-        place.field.add(&row, &power);
-        for (c, p) in power.iter().enumerate() {
-            place.shot[i * width + c] += p;
+            power = held.clone().map(|at| self.newest().shot[at] - place.shot[at]).collect();
+            row = self.row_between([&base, &place.geometry], Some(&place.change), i);
+            // Not a sum: what rounding leaves would be shot once more.
+            place.shot[held.clone()].copy_from_slice(&self.newest().shot[held]);
         }
+        place.field.add(&row, &power);
         self.preview = Some(preview);
         self.costs.redistributions += 1;
         self.account(&row, i);

@@ -1,33 +1,48 @@
 //! One row of form factors from a shooter to its receivers, or the difference of two.
 
-/// Form factors F_je from patch j to the elements, per channel: the mean first, then one for each randomisation left
-/// out. What is lost has places of its own behind the elements.
-#[derive(Debug, Clone)]
+/// Form factors F_je from patch j to the elements: of all rays, and of the rays of each randomisation where it has any.
+/// What is lost has places of its own behind the elements.
+#[derive(Debug, Clone, Default)]
 pub(super) struct Row {
-    pub channels: usize,
     pub sinks: Vec<u32>,
-    /// `channels` values for each sink.
-    pub factors: Vec<f64>,
+    mean: Vec<f64>,
+    /// Where the parts of each sink end.
+    ends: Vec<u32>,
+    /// (channel, form factor): channel r + 1 is randomisation r.
+    parts: Vec<(u16, f64)>,
+}
+
+/// The form factor to one place.
+pub(super) struct Entry<'a> {
+    pub sink: usize,
+    pub mean: f64,
+    /// By channel; channels left out are 0.
+    pub parts: &'a [(u16, f64)],
 }
 
 impl Row {
-    pub fn new(channels: usize) -> Self {
-        Self { channels, sinks: Vec::new(), factors: Vec::new() }
-    }
-
-    pub fn push(&mut self, sink: u32, factors: impl Iterator<Item = f64>) {
+    pub fn push(&mut self, sink: u32, mean: f64, parts: impl Iterator<Item = (u16, f64)>) {
         self.sinks.push(sink);
-        self.factors.extend(factors);
+        self.mean.push(mean);
+        self.parts.extend(parts);
+        self.ends.push(self.parts.len() as u32);
     }
 
-    /// Sinks with their factors.
-    pub fn iter(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        self.sinks.iter().map(|s| *s as usize).zip(self.factors.chunks_exact(self.channels))
+    /// A form factor without noise.
+    pub fn push_exact(&mut self, sink: u32, factor: f64) {
+        self.push(sink, factor, std::iter::empty());
     }
 
-    /// Half the sum of all changes, channel of the mean: the share of the shooter's power that a difference of rows
-    /// takes elsewhere.
+    pub fn iter(&self) -> impl Iterator<Item = Entry<'_>> {
+        let mut start = 0;
+        self.sinks.iter().zip(&self.mean).zip(&self.ends).map(move |((sink, mean), end)| {
+            let first = std::mem::replace(&mut start, *end as usize);
+            Entry { sink: *sink as usize, mean: *mean, parts: &self.parts[first..*end as usize] }
+        })
+    }
+
+    /// Half the sum of all changes: the share of the shooter's power that a difference of rows takes elsewhere.
     pub fn moved(&self) -> f64 {
-        self.factors.iter().step_by(self.channels).map(|f| f.abs()).sum::<f64>() / 2.0
+        self.mean.iter().map(|f| f.abs()).sum::<f64>() / 2.0
     }
 }

@@ -98,9 +98,8 @@ impl Shooting {
         self.run(Budget::default(), &mut |_, _| ControlFlow::Continue(()))
     }
 
-    fn is_converged(&mut self) -> bool {
-        let idle = self.lamps.is_empty() && self.next_preview().is_none();
-        idle && self.is_drained() && self.unshot_share() <= self.params.stop.unshot
+    fn is_converged(&self) -> bool {
+        self.lamps.is_empty() && self.is_settled() && self.next_preview(true).is_none()
     }
 
     fn shoot(&mut self, next: Next) -> (Step, usize) {
@@ -109,7 +108,10 @@ impl Shooting {
             Next::Redistribute(v, patch) => {
                 let state = self.versions[v].state;
                 let receivers = self.redistribute(v, patch);
-                self.forget_empty();
+                // All that holds power is queued.
+                if self.versions[v].queue.is_empty() {
+                    self.versions.remove(v);
+                }
                 (Step::Redistributed { patch, state }, receivers)
             }
             Next::Preview(patch) => (Step::Previewed { patch }, self.shoot_preview(patch)),

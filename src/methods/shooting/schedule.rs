@@ -28,7 +28,7 @@ fn larger<T>(best: Ranked<T>, key: f64, what: T) -> Ranked<T> {
 impl Shooting {
     /// The next shot; `None` if there is nothing to shoot at all.
     pub(super) fn next(&mut self) -> Option<Next> {
-        if let Some(i) = self.next_preview() {
+        if let Some(i) = self.next_preview(false) {
             return Some(Next::Preview(i));
         }
         while let Some(i) = self.lamps.pop() {
@@ -37,9 +37,14 @@ impl Shooting {
                 return Some(Next::Propagate(i));
             }
         }
-        let (propagate, redistribute) = (self.most_unshot(), self.most_to_redistribute());
+        if self.is_settled() {
+            return self.next_preview(true).map(Next::Preview);
+        }
+        // A patch that lacks no more than rounding of all the light has nothing to shoot: else `unshot=0` never ends.
+        let propagate = self.most_unshot().filter(|(u, _)| *u > f64::EPSILON * self.emitted);
+        let redistribute = self.most_to_redistribute();
         let Some((energy, (v, i))) = redistribute else {
-            return propagate.filter(|(u, _)| *u > 0.0).map(|(_, i)| Next::Propagate(i));
+            return propagate.map(|(_, i)| Next::Propagate(i)).or_else(|| self.next_preview(true).map(Next::Preview));
         };
         self.redistribute_first &= energy > self.params.threshold * self.emitted;
         let first = self.params.strategy == Strategy::One && self.redistribute_first;
@@ -53,8 +58,7 @@ impl Shooting {
     }
 
     fn luminous_unshot(&self, i: usize) -> f64 {
-        let weights = &self.stage.photometry.weights;
-        weights.iter().enumerate().map(|(c, w)| w.abs() * self.unshot_at(i, c).abs()).sum()
+        self.weights.iter().enumerate().map(|(c, w)| w * self.unshot_at(i, c).abs()).sum()
     }
 
     /// Looks again at what patches have unshot: those that a shot reached, or all.
@@ -109,6 +113,11 @@ impl Shooting {
         if unshot == 0.0 { 0.0 } else { unshot / self.emitted }
     }
 
+    /// True if the log is drained and no more is unshot than may be.
+    pub(super) fn is_settled(&self) -> bool {
+        self.is_drained() && self.unshot_share() <= self.params.stop.unshot
+    }
+
     /// True if no power is left in old versions.
     pub fn is_drained(&self) -> bool {
         self.versions.len() == 1
@@ -134,15 +143,25 @@ impl Shooting {
     }
 
     /// Bound on what unshot power may still bring, as a share of all luminous power: unshot / (1 - rho). Says nothing of
-    /// form factors, and nothing before the log is drained (`None`).
+    /// form factors, and nothing before the log is drained and a dragged object is shown in full (`None`). Of what was shot: no ambient estimate, no
+    /// drag.
     pub fn error_bound(&self) -> Option<f64> {
+        if !self.is_drained() || self.next_preview(true).is_some() {
+            return None;
+        }
         let brightest = self.vectors.reflectance.iter().copied().fold(0.0, f64::max);
         let bands = self.field.bands;
-        let b = self.radiosity();
-        let all: f64 =
-            (0..b.len()).map(|i| self.stage.patches[i].area * self.luminous(&b.values[i * bands..][..bands])).sum();
-        let missing = self.unshot_share() * self.emitted / (1.0 - brightest);
-        (self.is_drained() && all > 0.0).then(|| missing / all)
+        let width = self.field.width();
+        // A B = A E + rho P, band by band.
+        let leaving = |i: usize, c: usize| {
+            let at = i * bands + c;
+            self.stage.patches[i].area * self.vectors.emission[at]
+                + self.vectors.reflectance[at] * self.field.patches[i * width + c]
+        };
+        let of = |i: usize| self.weights.iter().enumerate().map(|(c, w)| w * leaving(i, c).abs()).sum::<f64>();
+        let all: f64 = (0..self.stage.patch_count()).map(of).sum();
+        let missing = self.unshot.iter().sum::<f64>() / (1.0 - brightest);
+        (all > 0.0).then(|| missing / all)
     }
 
     /// What unshot power would bring if it lit everything alike, as irradiance per band, W/m^2: for display. The mean of the
@@ -150,6 +169,9 @@ impl Shooting {
     pub fn ambient(&self) -> Vec<f64> {
         let bands = self.field.bands;
         let area: f64 = self.stage.patches.iter().map(|p| p.area).sum();
+        if area == 0.0 {
+            return vec![0.0; bands];
+        }
         let of = |c: usize| {
             let patches = || self.stage.patches.iter().enumerate();
             let unshot: f64 = patches().map(|(i, _)| self.unshot_at(i, c)).sum();

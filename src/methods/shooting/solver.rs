@@ -49,6 +49,11 @@ enum Caster {
 pub struct Shooting {
     pub(super) scene: Scene,
     pub(super) state: usize,
+    /// State in which it was opened.
+    pub(super) opened: usize,
+    /// Edits made that the scene did not have.
+    pub(super) own_edits: usize,
+    pub(super) seed: u64,
     kernel: KernelKind,
     enclosure: bool,
     pub(super) params: Params,
@@ -66,6 +71,8 @@ pub struct Shooting {
     /// Strategy one: redistribution goes first until it falls below the threshold.
     pub(super) redistribute_first: bool,
     pub(super) preview: Option<Preview>,
+    /// What counts as luminous for the order of shots and their end, per band.
+    pub(super) weights: Vec<f64>,
     /// Luminous power each patch has unshot, W; signs left out.
     pub(super) unshot: Vec<f64>,
     /// Luminous power emitted, W.
@@ -132,6 +139,13 @@ impl Shooting {
         let geometry = Arc::new(Geometry::open(stage, kernel, enclosure)?);
         let stage = geometry.stage.clone();
         let (caster, channels) = match params.factors {
+            Factors::Rays { randomisations, .. } if randomisations < 2 => {
+                return Err(ShootingError::Setting {
+                    method: "redistribution",
+                    text: format!("randomisations={randomisations}"),
+                    settings: "randomisations=R with R of 2 and more: their spread is the standard error".into(),
+                });
+            }
             Factors::Rays { rays, randomisations } => {
                 let each = Plan { rays, randomisations, ..Plan::default() }.rays_per_randomisation();
                 let counter = Counter::new(sinks(&stage), randomisations);
@@ -148,12 +162,16 @@ impl Shooting {
         let mut solver = Self {
             scene,
             state,
+            opened: state,
+            own_edits: 0,
+            seed,
             kernel,
             enclosure,
             params,
             caster,
             versions: vec![Version::new(geometry, state, values)],
             vectors: PatchVectors::of(&stage),
+            weights: weights(&stage.photometry.weights),
             stage,
             field,
             shot: vec![0.0; values],
@@ -224,8 +242,9 @@ impl Shooting {
         self.nothing_selected()?;
         self.scene.edits.insert(self.state, edit);
         let done = self.advance(self.state + 1);
-        if done.is_err() {
-            self.scene.edits.remove(self.state);
+        match done {
+            Ok(()) => self.own_edits += 1,
+            Err(_) => _ = self.scene.edits.remove(self.state),
         }
         done
     }
@@ -266,10 +285,19 @@ impl Shooting {
 
     /// Reflectances and emissions change; what has arrived stays.
     fn repaint(&mut self, stage: Stage) {
-        self.vectors = PatchVectors::of(&stage);
+        let before = std::mem::replace(&mut self.vectors, PatchVectors::of(&stage));
         self.stage = Arc::new(stage);
-        self.lamps = (0..self.stage.patch_count()).filter(|i| self.is_lamp(*i)).collect();
+        let bands = before.bands;
+        let emission = |v: &PatchVectors, i: usize| v.emission[i * bands..(i + 1) * bands].to_vec();
+        let lit = (0..self.stage.patch_count()).map(|i| emission(&before, i) != emission(&self.vectors, i)).collect();
+        self.lamps_first(lit);
         self.refresh(None);
+    }
+
+    /// Lamps among these patches shoot first, beside those that are still waiting.
+    fn lamps_first(&mut self, mut patches: Vec<bool>) {
+        self.lamps.iter().for_each(|i| patches[*i] = true);
+        self.lamps = (0..patches.len()).filter(|i| patches[*i] && self.is_lamp(*i)).collect();
     }
 
     pub(super) fn is_lamp(&self, i: usize) -> bool {
@@ -283,11 +311,7 @@ impl Shooting {
         let version = Version::new(geometry, state, self.shot.len());
         let newest = version.geometry.clone();
         let ended = self.newest().geometry.clone();
-        let samples = match self.params.ranking {
-            Ranking::Samples(n) => n as usize,
-            Ranking::Exact => 0,
-        };
-        let step = Change::between(&ended, &newest, samples);
+        let step = Change::between(&ended, &newest, self.params.ranking.samples());
         let estimate = importance::estimate([&ended, &newest], &step);
         self.costs.rays += estimate.rays;
         for old in &mut self.versions {
@@ -300,13 +324,12 @@ impl Shooting {
         if self.params.ranking == Ranking::Exact {
             self.rank_exactly();
         }
-        self.lamps = (0..step.own.len()).filter(|i| step.came[*i] && self.is_lamp(*i)).collect();
+        self.lamps_first(step.came);
         self.redistribute_first = true;
         let (width, bands) = (self.field.width(), self.field.bands);
-        let weights = self.stage.photometry.weights.clone();
         let last = self.versions.len() - 1;
         for version in &mut self.versions[..last] {
-            version.enqueue(width, bands, |power| luminous(&weights, power));
+            version.enqueue(width, bands, |power| luminous(&self.weights, power));
         }
         self.refresh(None);
     }
@@ -320,12 +343,7 @@ impl Shooting {
             let (old, newest) = (&mut old[v], &mut newest[0]);
             let Some(change) = &old.change else { continue };
             for i in 0..change.own.len() {
-                let diverts = match &self.caster {
-                    Caster::Rays(rays) => rays.0.may_divert(&old.geometry, change, i),
-                    // A hemi-cube's row has no rays to be chosen from: it is made anew unless all lies behind.
-                    Caster::Hemicube(..) => is_before(&old.geometry, change, i),
-                };
-                if change.own[i] || diverts || !old.holds(i, width) {
+                if !old.holds(i, width) || touches(&self.caster, &old.geometry, change, i) {
                     continue;
                 }
                 for c in i * width..(i + 1) * width {
@@ -337,7 +355,7 @@ impl Shooting {
         self.forget_empty();
     }
 
-    pub(super) fn forget_empty(&mut self) {
+    fn forget_empty(&mut self) {
         let last = self.versions.len() - 1;
         let mut number = 0;
         self.versions.retain(|v| {
@@ -394,7 +412,7 @@ impl Shooting {
                     (hemicube_row(old, patch, table, params), hemicube_row(new, patch, table, params));
                 less(&after, &before)
             }
-            (_, None) => Row::new(self.field.channels),
+            (_, None) => Row::default(),
         }
     }
 
@@ -438,7 +456,10 @@ impl Shooting {
                 self.shot[at] -= p;
             }
         }
-        self.versions[version].queue.retain(|(_, patch)| *patch as usize != i);
+        let queue = &mut self.versions[version].queue;
+        if queue.pop_if(|(_, patch)| *patch as usize == i).is_none() {
+            queue.retain(|(_, patch)| *patch as usize != i);
+        }
         self.costs.redistributions += 1;
         self.account(&row, i);
         row.sinks.len()
@@ -505,7 +526,7 @@ impl Shooting {
                 };
                 values[k * bands + c] = emission[c] + reflectance[c] * (received(0) + ambient[c]);
                 if let Some(std_err) = &mut std_err {
-                    std_err[k * bands + c] = reflectance[c] * jackknife((1..channels).map(received));
+                    std_err[k * bands + c] = reflectance[c] * std_err_of_mean((1..channels).map(received));
                 }
             }
         }
@@ -559,9 +580,14 @@ impl Shooting {
         self.versions[..self.versions.len() - 1].iter().map(entry).collect()
     }
 
+    /// True if a change may alter what patch i shoots.
+    pub(super) fn touches(&self, old: &Geometry, change: &Change, i: usize) -> bool {
+        touches(&self.caster, old, change, i)
+    }
+
     /// Sum of the bands' magnitudes by their luminance weights.
     pub(super) fn luminous(&self, power: &[f64]) -> f64 {
-        luminous(&self.stage.photometry.weights, power)
+        luminous(&self.weights, power)
     }
 }
 
@@ -576,7 +602,24 @@ fn lamps(scene: &Scene, stage: &Stage) -> Vec<bool> {
     stage.patches.iter().map(|p| shines[p.material as usize]).collect()
 }
 
-fn luminous(weights: &[f64], power: &[f64]) -> f64 {
+/// Luminance weights, those of bands that hardly count raised to a twentieth of the largest: no band is to be left
+/// unshot because it is not seen (X and Z of the XYZ primaries have weight 0).
+fn weights(luminance: &[f64]) -> Vec<f64> {
+    let largest = luminance.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
+    luminance.iter().map(|w| w.abs().max(0.05 * largest)).collect()
+}
+
+/// True if a change may alter what patch i shoots.
+fn touches(caster: &Caster, old: &Geometry, change: &Change, i: usize) -> bool {
+    change.own[i]
+        || match caster {
+            Caster::Rays(rays) => rays.0.may_divert(old, change, i),
+            // A hemi-cube's row has no rays to be chosen from: it is made anew unless all lies behind.
+            Caster::Hemicube(..) => is_before(old, change, i),
+        }
+}
+
+pub(super) fn luminous(weights: &[f64], power: &[f64]) -> f64 {
     power.iter().zip(weights).map(|(p, w)| w.abs() * p.abs()).sum()
 }
 
@@ -588,32 +631,32 @@ fn is_before(g: &Geometry, change: &Change, i: usize) -> bool {
     })
 }
 
-/// `sqrt((R - 1) / R sum (x_without_r - mean)^2)`.
-fn jackknife(without: impl Iterator<Item = f64> + Clone) -> f64 {
-    let r = without.clone().count() as f64;
-    let mean = without.clone().sum::<f64>() / r;
-    ((r - 1.0) / r * without.map(|x| (x - mean).powi(2)).sum::<f64>()).sqrt()
+/// `sqrt(sum (x_r - mean)^2 / (R (R - 1)))`.
+fn std_err_of_mean(replicates: impl Iterator<Item = f64> + Clone) -> f64 {
+    let r = replicates.clone().count() as f64;
+    let mean = replicates.clone().sum::<f64>() / r;
+    (replicates.map(|x| (x - mean).powi(2)).sum::<f64>() / (r * (r - 1.0))).sqrt()
 }
 
 fn hemicube_row(g: &Geometry, patch: usize, table: &DeltaTable, params: &super::super::hemicube::Params) -> Row {
-    let mut row = Row::new(1);
+    let mut row = Row::default();
     let Some((eye, frame)) = stand(&g.stage.patches[patch], params) else { return row };
     let (entries, lost) = Hemicube::new(g.world(), table).row(eye, &frame);
-    entries.iter().for_each(|(e, f)| row.push(*e, std::iter::once(*f)));
+    entries.iter().for_each(|(e, f)| row.push_exact(*e, *f));
     let lost = [
         (escaped_sink(&g.stage), lost.nothing),
         (back_sink(&g.stage), lost.backs),
         (g.stage.elements.len() + EXCESS_SINK, 1.0 - table.total()),
     ];
-    lost.iter().filter(|(_, f)| *f != 0.0).for_each(|(sink, f)| row.push(*sink as u32, std::iter::once(*f)));
+    lost.iter().filter(|(_, f)| *f != 0.0).for_each(|(sink, f)| row.push_exact(*sink as u32, *f));
     row
 }
 
 /// The difference of two rows; equal entries leave nothing.
 fn less(after: &Row, before: &Row) -> Row {
-    let mut entries: std::collections::BTreeMap<usize, f64> = after.iter().map(|(s, f)| (s, f[0])).collect();
-    before.iter().for_each(|(s, f)| *entries.entry(s).or_default() -= f[0]);
-    let mut row = Row::new(1);
-    entries.into_iter().filter(|(_, f)| *f != 0.0).for_each(|(s, f)| row.push(s as u32, std::iter::once(f)));
+    let mut entries: std::collections::BTreeMap<usize, f64> = after.iter().map(|e| (e.sink, e.mean)).collect();
+    before.iter().for_each(|e| *entries.entry(e.sink).or_default() -= e.mean);
+    let mut row = Row::default();
+    entries.into_iter().filter(|(_, f)| *f != 0.0).for_each(|(s, f)| row.push_exact(s as u32, f));
     row
 }
