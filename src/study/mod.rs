@@ -23,5 +23,5 @@ pub use residual::{ResidualRequest, ResidualRun, residual};
 pub use reuse::falls_short;
 pub use run::{SolveOutcome, SolveRequest, continuous_reference, reference, reference_on, solve};
 pub use session::Session;
-pub use shoot::{Course, Moments, ShootRequest, shoot};
+pub use shoot::{Course, Moments, ShootRequest, begin, shoot, shoot_on};
 pub use split::{Beside, SplitError, split_error};

@@ -64,28 +64,38 @@ pub fn shoot<E: From<MethodError>>(
     progress: &dyn Progress,
     take: &mut dyn FnMut(Snapshot) -> Result<(), E>,
 ) -> Result<(Shooting, End), E> {
+    let solver = begin(request)?;
+    shoot_on(solver, request, moments, progress, take)
+}
+
+/// A solver on the first state that a course goes through.
+///
+/// # Errors
+/// What the solver refuses.
+pub fn begin(request: &ShootRequest) -> Result<Shooting, MethodError> {
     let first = match request.course {
         Course::FromScratch => request.last,
         Course::Redistribution => 0,
     };
-    shoot_from(request, first, moments, progress, take)
+    Ok(Shooting::open(request.scene, first, request.params, request.kernel, request.seed)?)
 }
 
-fn shoot_from<E: From<MethodError>>(
+/// The same, going on with a solver that has begun.
+///
+/// # Errors
+/// As [`shoot`].
+pub fn shoot_on<E: From<MethodError>>(
+    mut solver: Shooting,
     request: &ShootRequest,
-    first: usize,
     moments: &Moments,
     progress: &dyn Progress,
     take: &mut dyn FnMut(Snapshot) -> Result<(), E>,
 ) -> Result<(Shooting, End), E> {
-    let refuse = |e| E::from(MethodError::Shooting(e));
-    let ShootRequest { scene, params, kernel, seed, .. } = *request;
-    let mut solver = Shooting::open(scene, first, params, kernel, seed).map_err(refuse)?;
     loop {
         let leaving = solver.state() < request.last;
-        let mut now = params;
+        let mut now = request.params;
         if leaving {
-            now.stop.unshot = params.before;
+            now.stop.unshot = request.params.before;
         }
         solver.set_params(now);
         progress.begin(&format!("shooting, state {}", solver.state()), None);
@@ -93,7 +103,7 @@ fn shoot_from<E: From<MethodError>>(
         if !leaving {
             return Ok((solver, end));
         }
-        solver.apply_next().map_err(refuse)?;
+        solver.apply_next().map_err(|e| E::from(MethodError::Shooting(e)))?;
     }
 }
 

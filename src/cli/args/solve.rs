@@ -37,6 +37,10 @@ pub struct SolveArgs {
     /// Keep the series of snapshots of a method that shoots, as `converge --series` reads it (per patch).
     #[arg(long, value_name = "DIR")]
     pub snapshots: Option<PathBuf>,
+    /// For methods that shoot: go on from this file where it is there, and leave there what to go on from (JSON). A stop by
+    /// shots or seconds then counts from where the last run ended.
+    #[arg(long, value_name = "FILE", conflicts_with = "snapshots")]
+    pub resume: Option<PathBuf>,
     /// Snapshots after these numbers of shots since the last edit; a dense choice unless given.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', requires = "snapshots")]
     pub snapshot_shots: Vec<u64>,

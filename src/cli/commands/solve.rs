@@ -22,8 +22,8 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
     if let Method::Progressive(params) | Method::Redistribution(params) = method {
         return solve_by_shots::run(args, &method, params, format, kernel, console);
     }
-    if args.snapshots.is_some() {
-        return Err(Failure::input("--snapshots is for methods that shoot: progressive and redistribution"));
+    if args.snapshots.is_some() || args.resume.is_some() {
+        return Err(Failure::input("--snapshots and --resume are for methods that shoot: progressive and redistribution"));
     }
     let stage = inputs::stage(&args.scene, console)?;
     let given = args.form_factors.as_deref().map(|f| read_form_factors_of(f, &stage)).transpose()?;

@@ -6,13 +6,14 @@ use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
 use crate::io::{BandNames, FileError, SeriesWriter, SolutionFormat, write_solution};
-use crate::methods::shooting::{End, Energy, Params, Shooting};
+use crate::methods::shooting::{End, Energy, Params, Saved, Shooting};
 use crate::methods::{Method, MethodError};
 use crate::raycast::KernelKind;
 use crate::scene::{Scene, Stage};
 use crate::solution::Snapshot;
-use crate::study::{Course, Moments, Receivers, ShootRequest, shoot};
+use crate::study::{Course, Moments, Receivers, ShootRequest, begin, shoot_on};
 use serde_json::{Value, json};
+use std::path::Path;
 
 pub fn run(
     args: &SolveArgs,
@@ -32,8 +33,16 @@ pub fn run(
     let request = ShootRequest { scene: &scene, course, last: stage.state, params, kernel, seed: args.seed };
     let mut writer = args.snapshots.as_deref().map(|f| SeriesWriter::create(f, SolutionFormat::Csv)).transpose()?;
     let mut keep = Keep { scene: &scene, writer: writer.as_mut(), stage: None };
-    let (solver, end) = shoot(&request, &moments(args), console, &mut |s| keep.add(&s))?;
+    let begun = match args.resume.as_deref().filter(|f| f.exists()) {
+        Some(file) => resume(file, &request)?,
+        None => begin(&request)?,
+    };
+    let (solver, end) = shoot_on(begun, &request, &moments(args), console, &mut |s| keep.add(&s))?;
     console.end();
+    if let Some(file) = &args.resume {
+        let saved = solver.save().map_err(MethodError::from)?;
+        inputs::write(file, &serde_json::to_vec(&saved).map_err(|e| Failure::input(e.to_string()))?)?;
+    }
     let (radiosity, receivers) = match args.per {
         PerLevel::Patch => (solver.radiosity(), Receivers::patches(&stage)),
         PerLevel::Element => (solver.element_radiosity(), Receivers::elements(&stage)),
@@ -46,6 +55,23 @@ pub fn run(
     Ok(exit::DONE)
 }
 
+/// A solver as an earlier run has left it.
+fn resume(file: &Path, request: &ShootRequest) -> Result<Shooting, Failure> {
+    let place = || file.display().to_string();
+    let bytes = std::fs::read(file).map_err(|e| Failure::input(format!("cannot be read: {e}")).at(place()))?;
+    let saved: Saved = serde_json::from_slice(&bytes).map_err(|e| {
+        Failure::input(format!("is no state of a solver that can be gone on from: {e}; delete it to begin anew")).at(place())
+    })?;
+    let ShootRequest { scene, params, kernel, seed, .. } = *request;
+    let solver = Shooting::restore(scene, params, kernel, seed, &saved)
+        .map_err(|e| Failure::input(format!("{e}; delete it to begin anew")).at(place()))?;
+    if solver.state() > request.last {
+        let message = format!("stands at state {}, after the one asked for ({})", solver.state(), request.last);
+        return Err(Failure::input(message).at(place()));
+    }
+    Ok(solver)
+}
+
 /// Refuses what shooting has no use for.
 fn check(args: &SolveArgs) -> Result<(), Failure> {
     if args.form_factors.is_some() || args.save_form_factors.is_some() {
@@ -54,6 +80,7 @@ fn check(args: &SolveArgs) -> Result<(), Failure> {
              gather and hemicube",
         ));
     }
+    args.resume.as_deref().map(inputs::check_writable).transpose()?;
     if !args.snapshot_shots.is_sorted() {
         return Err(Failure::input("--snapshot-shots must ascend: 1,2,5,10"));
     }
