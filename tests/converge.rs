@@ -1,34 +1,16 @@
 //! `etalon converge` from outside: curves of methods and of foreign series, refinement, two runs overlaid.
 
+mod common;
+
+use common::program::{ok, refused};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 const SCENE: &str = "builtin:dynamic-cube";
 /// Few rays, seen by rays alone: there is a noise floor to look at.
 const RAYS: &str = "--rays 256 --randomisations 8 --estimator rays --kernel builtin --quiet";
-
-fn run(folder: &Path, arguments: &str) -> Output {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin("etalon"));
-    command.current_dir(folder).env("NO_COLOR", "1").args(arguments.split_whitespace());
-    command.output().expect("it runs")
-}
-
-fn ok(folder: &Path, arguments: &str) -> String {
-    let out = run(folder, arguments);
-    let text = |b: &[u8]| String::from_utf8_lossy(b).into_owned();
-    assert_eq!(out.status.code(), Some(0), "{arguments}\n{}{}", text(&out.stdout), text(&out.stderr));
-    text(&out.stdout)
-}
-
-fn refused(folder: &Path, arguments: &str) -> String {
-    let out = run(folder, arguments);
-    let message = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert_eq!(out.status.code(), Some(2), "{arguments}\n{message}");
-    message
-}
 
 type Row = BTreeMap<String, String>;
 

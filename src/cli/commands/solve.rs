@@ -23,7 +23,9 @@ pub fn run(args: &SolveArgs, kernel: KernelKind, console: &Console) -> Result<u8
         return solve_by_shots::run(args, &method, params, format, kernel, console);
     }
     if args.snapshots.is_some() || args.resume.is_some() {
-        return Err(Failure::input("--snapshots and --resume are for methods that shoot: progressive and redistribution"));
+        return Err(Failure::input(
+            "--snapshots and --resume are for methods that shoot: progressive and redistribution",
+        ));
     }
     let stage = inputs::stage(&args.scene, console)?;
     let given = args.form_factors.as_deref().map(|f| read_form_factors_of(f, &stage)).transpose()?;

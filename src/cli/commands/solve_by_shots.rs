@@ -60,7 +60,8 @@ fn resume(file: &Path, request: &ShootRequest) -> Result<Shooting, Failure> {
     let place = || file.display().to_string();
     let bytes = std::fs::read(file).map_err(|e| Failure::input(format!("cannot be read: {e}")).at(place()))?;
     let saved: Saved = serde_json::from_slice(&bytes).map_err(|e| {
-        Failure::input(format!("is no state of a solver that can be gone on from: {e}; delete it to begin anew")).at(place())
+        Failure::input(format!("is no state of a solver that can be gone on from: {e}; delete it to begin anew"))
+            .at(place())
     })?;
     let ShootRequest { scene, params, kernel, seed, .. } = *request;
     let solver = Shooting::restore(scene, params, kernel, seed, &saved)

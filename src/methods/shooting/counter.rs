@@ -1,57 +1,51 @@
-//! Where rays end, counted with sign per receiver and randomisation.
+//! Where rays end, counted with sign.
 
 use super::row::Row;
 
 /// Signed counts of one row; zero between rows.
 #[derive(Debug, Default)]
 pub(super) struct Counter {
-    /// Randomisations rounded up to 2^shift.
-    shift: u32,
-    randomisations: usize,
     counts: Vec<i32>,
     seen: Vec<bool>,
     touched: Vec<u32>,
+    /// Rays of each randomisation.
+    rays: Vec<Vec<(u32, i8)>>,
 }
 
 impl Counter {
     /// A counter for `sinks` places where rays may end.
     pub fn new(sinks: usize, randomisations: u16) -> Self {
-        let shift = usize::from(randomisations).next_power_of_two().ilog2();
-        Self {
-            shift,
-            randomisations: usize::from(randomisations),
-            counts: vec![0; sinks << shift],
-            seen: vec![false; sinks],
-            touched: Vec::new(),
-        }
+        let rays = vec![Vec::new(); usize::from(randomisations)];
+        Self { counts: vec![0; sinks], seen: vec![false; sinks], touched: Vec::new(), rays }
     }
 
     /// Counts a ray.
     #[inline]
-    pub fn add(&mut self, sink: u32, randomisation: u16, by: i32) {
+    pub fn add(&mut self, sink: u32, randomisation: u16, by: i8) {
         let s = sink as usize;
         if !self.seen[s] {
             self.seen[s] = true;
             self.touched.push(sink);
         }
-        self.counts[s << self.shift | usize::from(randomisation)] += by;
+        self.counts[s] += i32::from(by);
+        self.rays[usize::from(randomisation)].push((sink, by));
     }
 
-    /// The row of shares: of all rays, and of the rays of each randomisation, of which each has `rays`. Leaves the counter
-    /// zero.
+    /// The row of what was counted; each randomisation has `rays` rays. Leaves the counter zero.
     pub fn take(&mut self, rays: u64) -> Row {
-        let r = self.randomisations;
-        let (one, all) = (rays as f64, (rays * r as u64) as f64);
-        let mut row = Row::default();
+        let all = (rays * self.rays.len() as u64) as f64;
+        let empty = |list: &mut Vec<(u32, i8)>| {
+            let length = list.len();
+            std::mem::replace(list, Vec::with_capacity(length))
+        };
+        let mut row =
+            Row { rays: self.rays.iter_mut().map(empty).collect(), share: 1.0 / rays as f64, ..Row::default() };
         for sink in self.touched.drain(..) {
             let s = sink as usize;
             self.seen[s] = false;
-            let counts = &mut self.counts[s << self.shift..][..r];
-            let hit = counts.iter().enumerate().filter(|(_, c)| **c != 0);
-            let parts = hit.map(|(k, c)| (k as u16 + 1, f64::from(*c) / one));
-            if counts.iter().any(|c| *c != 0) {
-                row.push(sink, f64::from(counts.iter().sum::<i32>()) / all, parts);
-                counts.fill(0);
+            match std::mem::take(&mut self.counts[s]) {
+                0 => {}
+                count => row.push_exact(sink, f64::from(count) / all),
             }
         }
         row

@@ -106,7 +106,7 @@ impl Fans {
     }
 
     /// Counts where all rays of a patch end, `by` each. Returns the number of rays traced.
-    pub fn whole(&self, g: &Geometry, patch: usize, by: i32, counter: &mut Counter) -> u64 {
+    pub fn whole(&self, g: &Geometry, patch: usize, by: i8, counter: &mut Counter) -> u64 {
         let Some(emitter) = &g.emitters[patch] else { return 0 };
         let (quiver, shift) = (self.of(patch), self.shifts.child(emitter.key));
         let landed = |s: &mut Scratch, batch: usize| {

@@ -17,8 +17,10 @@
 //! Form factors are by rays (default) or by hemi-cube at the shooter. A patch's rays depend on the seed and the
 //! patch alone; those that meet neither the old nor the new place of what has changed are not traced again.
 
+mod cast;
 mod change;
 mod counter;
+mod edit;
 mod energy;
 mod error;
 mod fan;
@@ -27,11 +29,13 @@ mod geometry;
 mod importance;
 mod params;
 mod preview;
+mod read;
 mod row;
 mod run;
 mod saved;
 mod schedule;
 mod shadow;
+mod shots;
 mod solver;
 mod version;
 

@@ -89,7 +89,7 @@ impl Shooting {
             change,
             weight: estimate.share,
             touched,
-            field: Field::dark(&self.stage, self.field.channels),
+            field: Field::dark(&self.stage, self.field.channels()),
             shot: vec![0.0; self.shot.len()],
         };
         if let Some(preview) = &mut self.preview {

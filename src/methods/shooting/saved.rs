@@ -29,7 +29,7 @@ pub struct Fingerprint {
     pub kernel: String,
 }
 
-/// The state of a solver. Power in W; a patch or element has `width` = channels x bands values, channel by channel.
+/// The state of a solver. Power in W; a patch has `width` = channels x bands values of what it has shot, channel by channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// What it belongs to.
@@ -38,9 +38,9 @@ pub struct Saved {
     pub opened: u64,
     /// State of the scene as it stands.
     pub state: u64,
-    /// Power that has arrived: elements, then the places where power is lost; x width.
+    /// Power that has arrived: channels x (elements, then the places where power is lost) x bands.
     pub elements: Vec<f64>,
-    /// Power that has arrived, patches x width.
+    /// Power that has arrived, channels x patches x bands.
     pub patches: Vec<f64>,
     /// Power shot in all versions together, patches x width.
     pub shot: Vec<f64>,
@@ -78,8 +78,8 @@ impl Shooting {
             fingerprint: self.fingerprint(),
             opened: self.opened as u64,
             state: self.state as u64,
-            elements: self.field.elements.clone(),
-            patches: self.field.patches.clone(),
+            elements: self.field.planes.iter().flat_map(|p| p.elements.iter().copied()).collect(),
+            patches: self.field.planes.iter().flat_map(|p| p.patches.iter().copied()).collect(),
             shot: self.shot.clone(),
             version_states: versions.iter().map(|v| v.state as u64).collect(),
             version_shot: versions.iter().flat_map(|v| v.shot.iter().copied()).collect(),
@@ -151,8 +151,12 @@ impl Shooting {
         }
         self.versions = versions;
         self.link();
-        self.field.elements.clone_from(&saved.elements);
-        self.field.patches.clone_from(&saved.patches);
+        let channels = self.field.channels();
+        let (elements, received) = (saved.elements.len() / channels, saved.patches.len() / channels);
+        for (k, plane) in self.field.planes.iter_mut().enumerate() {
+            plane.elements.copy_from_slice(&saved.elements[k * elements..][..elements]);
+            plane.patches.copy_from_slice(&saved.patches[k * received..][..received]);
+        }
         self.shot.clone_from(&saved.shot);
         self.lamps = saved.lamps.iter().map(|i| *i as usize).collect();
         self.redistribute_first = saved.redistribute_first;
@@ -178,24 +182,29 @@ impl Shooting {
 
     /// Refuses numbers that cannot have come about: power that is nowhere, or twice.
     fn check_sums(&self) -> Result<(), ShootingError> {
-        let width = self.field.width();
+        let (width, bands) = (self.field.width(), self.field.bands);
         let limit = SOUND * self.brightest;
-        let mut arrived = vec![0.0; self.shot.len()];
-        for (e, power) in self.stage.elements.iter().zip(self.field.elements.chunks_exact(width)) {
-            let at = e.patch as usize * width;
-            arrived[at..at + width].iter_mut().zip(power).for_each(|(a, p)| *a += p);
-        }
-        let shot = |k: usize| self.versions.iter().map(|v| v.shot[k]).sum::<f64>();
         let differs = |a: f64, b: f64| (a - b).abs() > limit;
-        if (0..arrived.len()).any(|k| differs(arrived[k], self.field.patches[k]) || differs(shot(k), self.shot[k])) {
+        let given = |c: usize| self.shot.iter().skip(c).step_by(width).sum::<f64>();
+        let shot = |k: usize| self.versions.iter().map(|v| v.shot[k]).sum::<f64>();
+        let mut agree = (0..self.shot.len()).all(|k| !differs(shot(k), self.shot[k]));
+        let mut kept = true;
+        for (channel, plane) in self.field.planes.iter().enumerate() {
+            let (mut arrived, mut all) = (vec![0.0; plane.patches.len()], vec![0.0; bands]);
+            for (k, power) in plane.elements.chunks_exact(bands).enumerate() {
+                all.iter_mut().zip(power).for_each(|(sum, p)| *sum += p);
+                if let Some(e) = self.stage.elements.get(k) {
+                    let at = e.patch as usize * bands;
+                    arrived[at..at + bands].iter_mut().zip(power).for_each(|(sum, p)| *sum += p);
+                }
+            }
+            agree &= arrived.iter().zip(&plane.patches).all(|(a, b)| !differs(*a, *b));
+            kept &= (0..bands).all(|c| !differs(all[c], given(channel * bands + c)));
+        }
+        if !agree {
             return Err(ShootingError::Damaged("sums of power do not agree".into()));
         }
-        let lost: Vec<f64> = self.field.elements.chunks_exact(width).fold(vec![0.0; width], |mut sum, power| {
-            sum.iter_mut().zip(power).for_each(|(s, p)| *s += p);
-            sum
-        });
-        let given = |c: usize| self.shot.iter().skip(c).step_by(width).sum::<f64>();
-        if (0..width).any(|c| differs(lost[c], given(c))) {
+        if !kept {
             return Err(ShootingError::Damaged("what arrived is not what was shot".into()));
         }
         Ok(())
@@ -219,7 +228,7 @@ impl Saved {
     fn check_sizes(&self, solver: &Shooting) -> Result<(), ShootingError> {
         let (values, patches, versions) = (solver.shot.len(), solver.stage.patch_count(), self.version_states.len());
         for (what, values, expected) in [
-            ("elements", &self.elements, solver.field.elements.len()),
+            ("elements", &self.elements, solver.field.planes.iter().map(|p| p.elements.len()).sum()),
             ("patches", &self.patches, values),
             ("shot", &self.shot, values),
             ("version_shot", &self.version_shot, versions * values),

@@ -65,7 +65,8 @@ impl Shooting {
     pub(super) fn refresh(&mut self, reached: Option<&Row>) {
         let patches = self.stage.patch_count();
         match reached {
-            Some(row) if row.sinks.len() < patches => {
+            // Elements of a patch are mostly reached by one shot: beyond this, all patches are less to look at.
+            Some(row) if row.sinks.len() < patches / 2 => {
                 for sink in &row.sinks {
                     if let Some(e) = self.stage.elements.get(*sink as usize) {
                         let i = e.patch as usize;
@@ -73,7 +74,8 @@ impl Shooting {
                     }
                 }
             }
-            _ => {
+            Some(_) => (0..patches).for_each(|i| self.unshot[i] = self.luminous_unshot(i)),
+            None => {
                 self.unshot = (0..patches).map(|i| self.luminous_unshot(i)).collect();
                 self.emitted = self.luminous_emission();
                 if self.emitted == 0.0 {
@@ -151,12 +153,11 @@ impl Shooting {
         }
         let brightest = self.vectors.reflectance.iter().copied().fold(0.0, f64::max);
         let bands = self.field.bands;
-        let width = self.field.width();
         // A B = A E + rho P, band by band.
         let leaving = |i: usize, c: usize| {
             let at = i * bands + c;
             self.stage.patches[i].area * self.vectors.emission[at]
-                + self.vectors.reflectance[at] * self.field.patches[i * width + c]
+                + self.vectors.reflectance[at] * self.field.of_patch(i, c)
         };
         let of = |i: usize| self.weights.iter().enumerate().map(|(c, w)| w * leaving(i, c).abs()).sum::<f64>();
         let all: f64 = (0..self.stage.patch_count()).map(of).sum();
