@@ -1,8 +1,9 @@
 //! `etalon converge` from outside: curves of methods and of foreign series, refinement, two runs overlaid.
 
-mod common;
+#[path = "common/program.rs"]
+mod program;
 
-use common::program::{ok, refused};
+use program::{ok, refused};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;

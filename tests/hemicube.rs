@@ -607,7 +607,8 @@ mod contact {
         assert_eq!((f.n, f.row(plate).count()), (3, 0));
         let (radiosity, info) = solve(&b.0, &set, &|_| ()).unwrap();
         assert_eq!(radiosity.of(plate), &[0.0], "an absent lamp is dark");
-        assert!(info.row_sums.min > 0.2, "absent patches do not count in the row sums: {:?}", info.row_sums);
+        let sums = info.row_sums.expect("a hemi-cube keeps its rows");
+        assert!(sums.min > 0.2, "absent patches do not count in the row sums: {sums:?}");
     }
 }
 
@@ -656,7 +657,8 @@ mod solution {
         for (set, wanted) in [(params(50), 10.0195546), (exact(50), 10.0)] {
             let (radiosity, info) = solve(&b.0, &Params { tolerance: 1e-14, ..set }, &|_| ()).unwrap();
             assert!(radiosity.values.iter().all(|v| close(*v, wanted, 1e-7)), "{set}: {}", radiosity.values[0]);
-            assert!(close(info.row_sums.max, info.row_sums.min, 1e-13) && info.residual[0] < 1e-13);
+            let sums = info.row_sums.expect("a hemi-cube keeps its rows");
+            assert!(close(sums.max, sums.min, 1e-13) && info.residual[0] < 1e-13);
         }
     }
 

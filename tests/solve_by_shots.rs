@@ -1,8 +1,9 @@
 //! `etalon solve --method progressive|redistribution` from outside: what it writes, tells and refuses.
 
-mod common;
+#[path = "common/program.rs"]
+mod program;
 
-use common::program::{json, ok, refused};
+use program::{json, ok, refused};
 use serde_json::Value;
 use std::fs;
 use tempfile::tempdir;

@@ -11,7 +11,7 @@ use crate::scene::Stage;
 use rayon::prelude::*;
 
 /// Batches below which one thread does the work.
-const FEW_BATCHES: usize = 16;
+const FEW_BATCHES: usize = 6;
 
 /// Places behind the elements where power may go.
 const ESCAPED_SINK: usize = 0;

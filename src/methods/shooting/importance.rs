@@ -42,7 +42,7 @@ fn towards(g: &Geometry, sample: DVec3, object: &[bool], shown: f64, share: &mut
         let (path, distance) = (sample - eye, sample.distance(eye));
         let cosine = path.dot(patch.normal) / distance;
         // What lies in the patch's plane or behind it sees nothing of it; not so where it is near: the object has size.
-        if !(cosine > 0.0) {
+        if cosine.is_nan() || cosine <= 0.0 {
             continue;
         }
         batch.from = patch.facet;
