@@ -46,7 +46,7 @@ fn missing(here: &Geometry, there: &Geometry) -> (Vec<bool>, Vec<Vec<DVec3>>) {
     (patches, corners)
 }
 
-/// The middle of the object, then middles of its faces at equal steps [GSG90, patch importance].
+/// The middle of the object, then middles of its faces at equal steps.
 fn sample_points(outline: &Option<Outline>, facets: &[Vec<DVec3>], count: usize) -> Vec<DVec3> {
     let Some(outline) = outline else { return Vec::new() };
     let middle = |f: &Vec<DVec3>| f.iter().sum::<DVec3>() / f.len() as f64;

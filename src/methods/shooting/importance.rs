@@ -1,4 +1,4 @@
-//! How much of a patch's power a change diverts, estimated at sample points of the object [GSG90, patch importance].
+//! How much of a patch's power a change diverts, estimated at sample points of the object.
 
 use super::change::Change;
 use super::geometry::Geometry;

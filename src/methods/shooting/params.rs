@@ -32,7 +32,7 @@ pub struct Stop {
     pub error: Option<f64>,
 }
 
-/// How redistribution and propagation take turns [GSG90].
+/// How redistribution and propagation take turns [GSG90 fig. 4].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Strategy {
     /// Redistribute first, down to a threshold; then whichever is larger.
