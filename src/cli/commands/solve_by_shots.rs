@@ -58,17 +58,19 @@ pub fn run(
 /// A solver as an earlier run has left it.
 fn resume(file: &Path, request: &ShootRequest) -> Result<Shooting, Failure> {
     let place = || file.display().to_string();
-    let bytes = std::fs::read(file).map_err(|e| Failure::input(format!("cannot be read: {e}")).at(place()))?;
-    let saved: Saved = serde_json::from_slice(&bytes).map_err(|e| {
-        Failure::input(format!("is no state of a solver that can be gone on from: {e}; delete it to begin anew"))
-            .at(place())
-    })?;
+    let wrong = |what: String| Failure::input(format!("{}: {what}", place())).at(place());
+    let mend = "go on with what it was saved from, or delete it to begin anew";
+    let bytes = std::fs::read(file).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+    let saved: Saved = serde_json::from_slice(&bytes)
+        .map_err(|e| wrong(format!("is no state of a solver that can be gone on from ({e}); {mend}")))?;
     let ShootRequest { scene, params, kernel, seed, .. } = *request;
-    let solver = Shooting::restore(scene, params, kernel, seed, &saved)
-        .map_err(|e| Failure::input(format!("{e}; delete it to begin anew")).at(place()))?;
+    let solver = Shooting::restore(scene, params, kernel, seed, &saved).map_err(|e| wrong(format!("{e}; {mend}")))?;
     if solver.state() > request.last {
-        let message = format!("stands at state {}, after the one asked for ({})", solver.state(), request.last);
-        return Err(Failure::input(message).at(place()));
+        return Err(wrong(format!(
+            "stands at state {}, after the one asked for ({}); {mend}",
+            solver.state(),
+            request.last
+        )));
     }
     Ok(solver)
 }

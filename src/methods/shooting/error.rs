@@ -52,10 +52,10 @@ pub enum ShootingError {
     #[error("{0} edits were made that the scene file does not have; a state can be saved only with edits of the file")]
     Unsaved(usize),
     /// A saved state of something else.
-    #[error("the saved state belongs to {0}; take it up with what it was saved from, or start anew")]
+    #[error("the saved state belongs to {0}")]
     Foreign(&'static str),
     /// A saved state that cannot be.
-    #[error("the saved state is damaged ({0}); start anew")]
+    #[error("the saved state is damaged ({0})")]
     Damaged(String),
     /// Nothing is selected.
     #[error("no object is selected")]

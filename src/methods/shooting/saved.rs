@@ -105,19 +105,14 @@ impl Shooting {
     ) -> Result<Self, ShootingError> {
         saved.check_states(scene)?;
         let mut solver = Self::open(scene, saved.opened as usize, params, kernel, seed)?;
+        // What the numbers belong to comes before the numbers: another number of rays has others.
+        let (had, has) = (&saved.fingerprint, solver.fingerprint());
+        foreign("other form factors", had.factors == has.factors)?;
+        foreign("another seed", had.seed == has.seed)?;
+        foreign("another ray kernel", had.kernel == has.kernel)?;
         saved.check_sizes(&solver)?;
         solver.take_up(saved)?;
-        let (had, has) = (&saved.fingerprint, solver.fingerprint());
-        for (what, same) in [
-            ("another scene", had.stages == has.stages),
-            ("other form factors", had.factors == has.factors),
-            ("another seed", had.seed == has.seed),
-            ("another ray kernel", had.kernel == has.kernel),
-        ] {
-            if !same {
-                return Err(ShootingError::Foreign(what));
-            }
-        }
+        foreign("another scene", had.stages == solver.fingerprint().stages)?;
         solver.check_sums()?;
         Ok(solver)
     }
@@ -209,6 +204,11 @@ impl Shooting {
         }
         Ok(())
     }
+}
+
+/// Refuses what belongs to something else.
+fn foreign(what: &'static str, same: bool) -> Result<(), ShootingError> {
+    if same { Ok(()) } else { Err(ShootingError::Foreign(what)) }
 }
 
 impl Saved {
