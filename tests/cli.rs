@@ -15,6 +15,16 @@ fn workshop() -> tempfile::TempDir {
 }
 
 #[test]
+fn every_method_gives_values_of_elements() {
+    let place = tempfile::tempdir().expect("a folder");
+    for method in ["gather:rays=64,estimator=rays", "hemicube:resolution=10", "progressive:rays=64,unshot=10%"] {
+        ok(place.path(), &format!("solve builtin:cube-room --method {method} --per element -o e.csv --quiet"));
+        let rows = std::fs::read_to_string(place.path().join("e.csv")).expect("written").lines().count() - 1;
+        assert_eq!(rows, 1750, "{method}");
+    }
+}
+
+#[test]
 fn the_three_verdicts_and_their_codes() {
     let place = workshop();
     let here = place.path();

@@ -39,6 +39,49 @@ fn both_methods_end_in_the_same_solution_and_balance_their_energy() {
     assert!(p.len() == r.len() && p.iter().zip(&r).all(|(a, b)| (a - b).abs() < 1e-7 * size));
 }
 
+/// Radiosities and standard errors of all bands, by patch.
+fn with_errors(path: &std::path::Path) -> Vec<(f64, f64)> {
+    let text = fs::read_to_string(path).expect("a solution");
+    let mut lines = text.lines().map(|l| l.split(',').collect::<Vec<_>>());
+    let header = lines.next().expect("a header");
+    let errors: Vec<(usize, usize)> = (0..header.len())
+        .filter_map(|e| {
+            let band = header[e].strip_suffix("_std_err")?;
+            Some((header.iter().position(|h| *h == band)?, e))
+        })
+        .collect();
+    let value = |l: &Vec<&str>, c: usize| l[c].parse::<f64>().expect("a number");
+    let of = |l: Vec<&str>| errors.iter().map(|(v, e)| (value(&l, *v), value(&l, *e))).collect::<Vec<_>>();
+    lines.flat_map(of).collect()
+}
+
+/// The redistributed solution against the judge, within both errors: of the differences over their joint standard errors,
+/// 5 % are to lie beyond Student's t of 15 degrees. Differences within a run go together, runs do not: by the spread of
+/// the eight shares their mean has a standard error of about 0.5 %, so that the bounds are eight and nine of these away.
+#[test]
+fn redistribution_agrees_with_the_judge_within_both_errors() {
+    const T_95: f64 = 2.131;
+    let folder = tempdir().expect("a folder");
+    let folder = folder.path();
+    ok(folder, &format!("reference {SCENE} --rays 1024 -o ref --kernel builtin --quiet"));
+    let judge = with_errors(&folder.join("ref/reference.csv"));
+    let mut outside = Vec::new();
+    for seed in 1..=8 {
+        let method = "redistribution:rays=1024,lamps=1,unshot=1e-6";
+        ok(folder, &format!("solve {SCENE} --method {method} --seed {seed} -o r.csv --kernel builtin --quiet"));
+        let ours = with_errors(&folder.join("r.csv"));
+        assert_eq!(ours.len(), judge.len());
+        let beyond = |((b, s), (r, t)): (&(f64, f64), &(f64, f64))| (b - r).abs() > T_95 * s.hypot(*t);
+        // Lamps that reflect next to nothing have next to no error on either side.
+        let noisy = ours.iter().zip(&judge).filter(|((b, s), _)| *s > 1e-9 * b);
+        let (all, out) = noisy.fold((0.0, 0.0), |(n, k), pair| (n + 1.0, k + f64::from(u8::from(beyond(pair)))));
+        outside.push(out / all);
+    }
+    let mean = outside.iter().sum::<f64>() / 8.0;
+    println!("beyond the 95 % intervals: {:.1} % of the differences, by run {outside:.3?}", 100.0 * mean);
+    assert!((0.005..0.09).contains(&mean), "{mean}: {outside:?}");
+}
+
 #[test]
 fn snapshots_are_a_series_that_converge_reads() {
     let folder = tempdir().expect("a folder");

@@ -98,7 +98,8 @@ impl HitCounts {
     /// Mean form factors with the standard errors that the spread of the randomisations shows.
     pub fn form_factors(&self) -> FormFactors {
         let row = |i: usize| self.by_patch(i).map(|(j, run)| (j as u32, self.mean(run), self.std_err(run))).collect();
-        FormFactors::from_rows((0..self.rows.len()).map(row).collect())
+        // As many columns as patches, however many elements the rows are of.
+        FormFactors { n: self.patches, ..FormFactors::from_rows((0..self.rows.len()).map(row).collect()) }
     }
 
     fn mean(&self, run: &[Entry]) -> f64 {
