@@ -197,8 +197,8 @@ impl Known {
     }
 }
 
-/// The invariant `P = sum over versions of F_v^T Q_v`, and with nothing in the log `B = E + rho F (B - U)`. Returns the largest
-/// gap relative to the largest power shot.
+/// The invariant `P = sum over versions of F_v^T Q_v`, and with nothing in the log `B = E + rho F (B - U)`. Returns
+/// the largest gap relative to the largest power shot.
 pub fn invariant_gap(solver: &Shooting, known: &mut Known) -> f64 {
     let stage = solver.stage().clone();
     let (n, bands) = (stage.patch_count(), stage.band_count());

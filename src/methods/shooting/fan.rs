@@ -87,8 +87,8 @@ struct Diverted {
 }
 
 impl Fans {
-    /// The candidate's rays under a seed: `rays` of each randomisation, `boost` times as many for lamps. Which patches are
-    /// lamps is settled once, for the rays of a patch must not change with an edit.
+    /// The candidate's rays under a seed: `rays` of each randomisation, `boost` times as many for lamps. Which
+    /// patches are lamps is settled once, for the rays of a patch must not change with an edit.
     pub fn new(rays: u64, randomisations: u16, seed: u64, boost: u32, is_lamp: Vec<bool>) -> Self {
         let stream = Stream::new(Role::Candidate, seed);
         let quiver = |rays| Quiver::new(stream.child(0), randomisations, rays);
@@ -124,8 +124,8 @@ impl Fans {
         quiver.net.len() as u64
     }
 
-    /// Counts the rays of a patch that a change has diverted: -1 where they ended, +1 where they end now. The patch's own
-    /// rays must be the same in both versions. Returns the number of rays traced.
+    /// Counts the rays of a patch that a change has diverted: -1 where they ended, +1 where they end now. The patch's
+    /// own rays must be the same in both versions. Returns the number of rays traced.
     pub fn diverted(&self, [old, new]: [&Geometry; 2], change: &Change, patch: usize, counter: &mut Counter) -> u64 {
         let (Some(from), Some(to)) = (&old.emitters[patch], &new.emitters[patch]) else { return 0 };
         let batches = self.within_shadow(old, change, patch);

@@ -10,9 +10,10 @@
 //!
 //! The last equation holds after every step. An edit makes a new version; to redistribute a patch is to move its
 //! `Q` from an old version to the newest, which adds `(F_new - F_old)^T Q` to `P`: the term of [GSG90 eq. 5], for any
-//! number of changes at once. What it adds is unshot, and is propagated like any other: [GSG90 eq. 6]. When nothing is left in old
-//! versions and nothing is unshot, B solves the radiosity equation of the new scene exactly, whatever happened
-//! before. A change of reflectance or emission takes no redistribution: P stays, B and what is unshot follow.
+//! number of changes at once. What it adds is unshot, and is propagated like any other: [GSG90 eq. 6]. When nothing
+//! is left in old versions and nothing is unshot, B solves the radiosity equation of the new scene exactly, whatever
+//! happened before. A change of reflectance or emission takes no redistribution: P stays, B and what is unshot
+//! follow.
 //!
 //! Form factors are by rays (default) or by hemi-cube at the shooter. A patch's rays depend on the seed and the
 //! patch alone; those that meet neither the old nor the new place of what has changed are not traced again.

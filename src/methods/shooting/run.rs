@@ -61,8 +61,8 @@ pub struct Event {
 }
 
 impl Shooting {
-    /// Shoots until the settings' stop is met, the budget is spent, or `after` breaks. `after` sees the solver after every
-    /// step; its own time does not count.
+    /// Shoots until the settings' stop is met, the budget is spent, or `after` breaks. `after` sees the solver after
+    /// every step; its own time does not count.
     pub fn run(&mut self, budget: Budget, after: &mut dyn FnMut(&Self, &Event) -> ControlFlow<()>) -> End {
         let from = self.costs;
         let stop = self.params.stop;

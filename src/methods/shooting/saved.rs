@@ -1,6 +1,7 @@
 //! The state of a solver as plain numbers, to be stored and taken up again.
 //!
-//! Geometries are not in it: they are laid out again from the scene file, so edits made beside the file cannot be saved.
+//! Geometries are not in it: they are laid out again from the scene file, so edits made beside the file cannot be
+//! saved.
 
 use super::change::Change;
 use super::geometry::Geometry;
@@ -29,7 +30,8 @@ pub struct Fingerprint {
     pub kernel: String,
 }
 
-/// The state of a solver. Power in W; a patch has `width` = channels x bands values of what it has shot, channel by channel.
+/// The state of a solver. Power in W; a patch has `width` = channels x bands values of what it has shot, channel by
+/// channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// What it belongs to.

@@ -108,8 +108,8 @@ impl Shooting {
         (0..self.stage.patch_count()).map(of).sum()
     }
 
-    /// Luminous power unshot as a share of what is emitted (of the most that was ever emitted, where all lamps are out);
-    /// signs do not cancel.
+    /// Luminous power unshot as a share of what is emitted (of the most that was ever emitted, where all lamps are
+    /// out); signs do not cancel.
     pub fn unshot_share(&self) -> f64 {
         let unshot: f64 = self.unshot.iter().sum();
         if unshot == 0.0 { 0.0 } else { unshot / self.emitted }
@@ -125,7 +125,8 @@ impl Shooting {
         self.versions.len() == 1
     }
 
-    /// How far it has come: shots, and what is unshot relative to what is emitted, in the area-weighted RMS of each band.
+    /// How far it has come: shots, and what is unshot relative to what is emitted, in the area-weighted RMS of each
+    /// band.
     pub fn info(&self) -> MethodInfo {
         let bands = self.field.bands;
         let unshot = self.unshot();
@@ -144,9 +145,9 @@ impl Shooting {
         }
     }
 
-    /// Bound on what unshot power may still bring, as a share of all luminous power: unshot / (1 - rho). Says nothing of
-    /// form factors, and nothing before the log is drained and a dragged object is shown in full (`None`). Of what was shot: no ambient estimate, no
-    /// drag.
+    /// Bound on what unshot power may still bring, as a share of all luminous power: unshot / (1 - rho). Says nothing
+    /// of form factors, and nothing before the log is drained and a dragged object is shown in full (`None`). Of what
+    /// was shot: no ambient estimate, no drag.
     pub fn error_bound(&self) -> Option<f64> {
         if !self.is_drained() || self.next_preview(true).is_some() {
             return None;
@@ -165,8 +166,8 @@ impl Shooting {
         (all > 0.0).then(|| missing / all)
     }
 
-    /// What unshot power would bring if it lit everything alike, as irradiance per band, W/m^2: for display. The mean of the
-    /// unshot power over the area, multiplied by reflections off the mean reflectance.
+    /// What unshot power would bring if it lit everything alike, as irradiance per band, W/m^2: for display. The mean
+    /// of the unshot power over the area, multiplied by reflections off the mean reflectance.
     pub fn ambient(&self) -> Vec<f64> {
         let bands = self.field.bands;
         let area: f64 = self.stage.patches.iter().map(|p| p.area).sum();
