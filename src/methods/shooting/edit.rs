@@ -117,7 +117,7 @@ impl Shooting {
             self.rank_exactly();
         }
         self.lamps_first(step.came);
-        self.redistribute_first = true;
+        (self.redistribute_first, self.drains) = (true, false);
         let (width, bands) = (self.field.width(), self.field.bands);
         let last = self.versions.len() - 1;
         for version in &mut self.versions[..last] {

@@ -56,6 +56,8 @@ pub struct Saved {
     pub lamps: Vec<u64>,
     /// Strategy one is still in its first part.
     pub redistribute_first: bool,
+    /// The rest of the log goes before anything else.
+    pub drains: bool,
     /// Most luminous power ever emitted, W.
     pub brightest: f64,
     /// Shots, redistributions, spared patches, rays, receivers.
@@ -88,6 +90,7 @@ impl Shooting {
             version_weight: versions.iter().flat_map(|v| v.weight.iter().copied()).collect(),
             lamps: self.lamps.iter().map(|i| *i as u64).collect(),
             redistribute_first: self.redistribute_first,
+            drains: self.drains,
             brightest: self.brightest,
             costs: [shots, redistributions, spared, rays, receivers],
             seconds,
@@ -157,6 +160,7 @@ impl Shooting {
         self.shot.clone_from(&saved.shot);
         self.lamps = saved.lamps.iter().map(|i| *i as usize).collect();
         self.redistribute_first = saved.redistribute_first;
+        self.drains = saved.drains;
         self.brightest = saved.brightest;
         let [shots, redistributions, spared, rays, receivers] = saved.costs;
         self.costs = Costs { shots, redistributions, spared, rays, receivers, seconds: saved.seconds };

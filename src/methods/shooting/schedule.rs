@@ -46,8 +46,12 @@ impl Shooting {
         let Some((energy, (v, i))) = redistribute else {
             return propagate.map(|(_, i)| Next::Propagate(i)).or_else(|| self.next_preview(true).map(Next::Preview));
         };
-        self.redistribute_first &= energy > self.params.threshold * self.emitted;
-        let first = self.params.strategy == Strategy::One && self.redistribute_first;
+        // Where the estimates see nothing more to redistribute, all that is left in the log goes at once. Each shot brings a
+        // little that is unshot, and to shoot that before the next one would be to converge once for each of them.
+        let may_stay = self.params.stop.unshot * self.emitted;
+        self.drains |= self.unshot_share() <= self.params.stop.unshot && self.left_in_log() <= may_stay;
+        self.redistribute_first &= self.params.threshold == 0.0 || energy > self.params.threshold * self.emitted;
+        let first = self.drains || (self.params.strategy == Strategy::One && self.redistribute_first);
         match propagate {
             // Below what may stay unshot only the log is left.
             Some((unshot, j)) if !first && unshot > energy && self.unshot_share() > self.params.stop.unshot => {
@@ -94,6 +98,11 @@ impl Shooting {
 
     fn most_unshot(&self) -> Ranked<usize> {
         self.unshot.iter().enumerate().fold(None, |best, (i, u)| larger(best, *u, i))
+    }
+
+    /// Luminous power to be redistributed as estimated, W.
+    fn left_in_log(&self) -> f64 {
+        self.versions.iter().flat_map(|v| &v.queue).map(|(key, _)| key).sum()
     }
 
     fn most_to_redistribute(&self) -> Ranked<(usize, usize)> {

@@ -58,6 +58,8 @@ pub struct Shooting {
     pub(super) lamps: Vec<usize>,
     /// Strategy one: redistribution goes first until it falls below the threshold.
     pub(super) redistribute_first: bool,
+    /// The rest of the log goes before anything else.
+    pub(super) drains: bool,
     pub(super) preview: Option<Preview>,
     /// What counts as luminous for the order of shots and their end, per band.
     pub(super) weights: Vec<f64>,
@@ -165,6 +167,7 @@ impl Shooting {
             shot: vec![0.0; values],
             lamps: Vec::new(),
             redistribute_first: false,
+            drains: false,
             preview: None,
             unshot: Vec::new(),
             emitted: 0.0,
