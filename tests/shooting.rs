@@ -469,6 +469,30 @@ mod order {
     }
 
     /// A redistribution traces the shadow volume alone.
+    /// Strategy one without a threshold redistributes everything before it propagates anything, also what the estimates see
+    /// nothing of: left for later, each of those shots would cost a convergence of its own.
+    #[test]
+    fn all_is_redistributed_before_anything_is_propagated() {
+        let scene = {
+            let mut s = scene();
+            s.absent.clear();
+            s
+        };
+        let mut solver = open(&scene, params());
+        solver.converge();
+        solver.apply(moved("box", [-0.1, 0.1, 0.1])).unwrap();
+        let (mut redistributed, mut late, mut propagated) = (0, 0, 0);
+        solver.run(Budget::default(), &mut |_, e| {
+            match e.step {
+                Step::Propagated { .. } => propagated += 1,
+                _ if propagated > 0 => late += 1,
+                _ => redistributed += 1,
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(redistributed > 10 && propagated > 10 && late == 0, "{redistributed} {propagated} {late}");
+    }
+
     #[test]
     fn few_rays_are_traced_again() {
         let rays = 1 << 13;
