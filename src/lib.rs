@@ -35,6 +35,7 @@
 //! - **candidate, solution**: a method that is judged; its radiosities.
 
 pub mod api;
+pub mod audit;
 pub mod cli;
 pub mod doctor;
 pub mod estimate;

@@ -19,6 +19,7 @@ const MAP: &[(&str, &[&str])] = &[
     ("reference", &["*", "-doctor"]),
     ("methods", &["*", "-reference", "-doctor"]),
     ("metrics", &["math", "stats", "solution", "view"]),
+    ("audit", &["*", "-reference", "-doctor"]),
     ("render", &["math", "view", "scene", "solution", "raycast"]),
     ("io", &["math", "view", "scene", "solution"]),
     ("study", &["*"]),
