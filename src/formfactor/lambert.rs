@@ -8,6 +8,9 @@ use std::f64::consts::PI;
 /// Heights below this share of the largest distance are rounding: the point or vertex lies in the plane.
 const ON_PLANE: f64 = 1e-15;
 
+/// The same for a point given by itself, whose own coordinates are rounded.
+const HEIGHT_OF_A_POINT: f64 = 1e-12;
+
 /// Form factor from a differential area to a convex planar polygon, nothing standing between: the share (0 to 1) of
 /// the light leaving `point` diffusely about `normal` (of any length) that arrives on the polygon's front.
 ///
@@ -48,6 +51,19 @@ pub fn point_to_polygon(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     }
     let visible = above(&seen, normal, 0.0, ON_PLANE * reach);
     (contour_sum(DVec3::ZERO, normal, &Edge::around(&visible)) / (2.0 * PI)).clamp(0.0, 1.0)
+}
+
+/// The part of a convex polygon that a point over the horizon of the unit vector `normal` sees from its front; `None`
+/// if it sees nothing of it.
+pub fn facing_point(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> Option<Vec<DVec3>> {
+    let reach = polygon.iter().map(|p| p.distance(point)).fold(0.0, f64::max);
+    let height = (point - polygon[0]).dot(unit_normal(polygon));
+    // In floating point a point "in" the plane stands a few roundings off it.
+    if height <= HEIGHT_OF_A_POINT * reach {
+        return None;
+    }
+    let part = above(polygon, normal, normal.dot(point), HEIGHT_OF_A_POINT * reach);
+    (part.len() >= 3).then(|| part.into_owned())
 }
 
 /// The part of a convex polygon with `normal . p >= offset`; empty where nothing rises above it by more than `slack`.

@@ -16,23 +16,43 @@ const SAME_NORMAL: f64 = 1e-9;
 /// Corners closer than this share of the scene's extent are one.
 const SAME: f64 = 1e-9;
 
-/// All bodies of a stage: every facet is part of just one, but for facets that coincide back to back.
-pub fn bodies(stage: &Stage) -> Vec<Polytope> {
+/// All that can hide in a stage.
+#[derive(Debug, Clone)]
+pub struct Bodies {
+    /// The bodies: every facet is part of just one, but for facets that coincide back to back.
+    pub list: Vec<Polytope>,
+    /// Number of the body that each facet is part of, `None` for degenerate facets. It hides nothing from the facet,
+    /// nor the facet from anybody, though its corners may be rounded out of the facet's plane.
+    pub of_facet: Vec<Option<u32>>,
+}
+
+/// All bodies of a stage.
+pub fn bodies(stage: &Stage) -> Bodies {
     let loops = welded(stage);
-    let mut out = Vec::new();
+    let mut list = Vec::new();
+    let mut of_face = vec![None; loops.faces.len()];
     for part in connected(&loops.faces) {
-        match solid(&loops, &part) {
-            Some(body) => out.push(body),
-            None => out.extend(part.iter().filter_map(|f| Polytope::flat(&loops.corners(*f)))),
+        if let Some(body) = solid(&loops, &part) {
+            part.iter().for_each(|f| of_face[*f] = Some(list.len() as u32));
+            list.push(body);
+            continue;
+        }
+        for f in part {
+            if let Some(plate) = Polytope::flat(&loops.corners(f)) {
+                of_face[f] = Some(list.len() as u32);
+                list.push(plate);
+            }
         }
     }
-    out
+    Bodies { list, of_facet: loops.of_facet.iter().map(|f| f.and_then(|f| of_face[f])).collect() }
 }
 
 /// Facets as loops of shared vertices.
 struct Loops {
     vertices: Vec<DVec3>,
     faces: Vec<Vec<u32>>,
+    /// Face of each facet.
+    of_facet: Vec<Option<usize>>,
 }
 
 impl Loops {
@@ -47,8 +67,8 @@ fn welded(stage: &Stage) -> Loops {
     let cell = (SAME * (hi - lo).max_element()).max(f64::MIN_POSITIVE);
     let key = |p: DVec3| ((p - lo) / cell).round().to_array().map(|x| x as i64);
     let mut known: HashMap<[i64; 3], u32> = HashMap::new();
-    let mut loops = Loops { vertices: Vec::new(), faces: Vec::new() };
-    let mut sets = std::collections::HashSet::new();
+    let mut loops = Loops { vertices: Vec::new(), faces: Vec::new(), of_facet: Vec::new() };
+    let mut sets: HashMap<Vec<u32>, usize> = HashMap::new();
     for facet in &stage.facets {
         let mut face: Vec<u32> = Vec::with_capacity(facet.vertices.len());
         for p in &facet.vertices {
@@ -63,10 +83,17 @@ fn welded(stage: &Stage) -> Loops {
         }
         let mut set = face.clone();
         set.sort_unstable();
+        if face.len() < 3 {
+            loops.of_facet.push(None);
+            continue;
+        }
         // The two sides of a plate hide alike.
-        if face.len() >= 3 && sets.insert(set) {
+        let next = loops.faces.len();
+        let number = *sets.entry(set).or_insert(next);
+        if number == next {
             loops.faces.push(face);
         }
+        loops.of_facet.push(Some(number));
     }
     loops
 }
@@ -232,7 +259,7 @@ mod tests {
 
     #[test]
     fn a_box_of_many_faces_is_one_body_of_six_planes() {
-        let found = bodies(&Stage::from_polygons(&block(DVec3::ZERO, DVec3::ONE, 3, false)));
+        let found = bodies(&Stage::from_polygons(&block(DVec3::ZERO, DVec3::ONE, 3, false))).list;
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].planes().len(), found[0].vertices().len(), found[0].edges().len()), (6, 8, 12));
     }
@@ -240,10 +267,10 @@ mod tests {
     #[test]
     fn a_box_without_bottom_is_a_body_only_where_it_stands_on_something() {
         let open = || block(DVec3::new(0.2, 0.2, 0.0), DVec3::new(0.4, 0.5, 0.3), 1, true);
-        assert_eq!(bodies(&Stage::from_polygons(&open())).len(), 5);
+        assert_eq!(bodies(&Stage::from_polygons(&open())).list.len(), 5);
         let mut standing = open();
         standing.push([(0., 0.), (1., 0.), (1., 1.), (0., 1.)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec());
-        let found = bodies(&Stage::from_polygons(&standing));
+        let found = bodies(&Stage::from_polygons(&standing)).list;
         assert_eq!(found.iter().map(|b| b.planes().len()).collect::<Vec<_>>(), [6, 2]);
     }
 
@@ -251,9 +278,9 @@ mod tests {
     fn rooms_and_plates_are_taken_face_by_face() {
         let mut room = block(DVec3::ZERO, DVec3::ONE, 1, false);
         room.iter_mut().for_each(|f| f.reverse());
-        assert_eq!(bodies(&Stage::from_polygons(&room)).len(), 6);
+        assert_eq!(bodies(&Stage::from_polygons(&room)).list.len(), 6);
         let plate: Vec<DVec3> = [(0., 0.), (1., 0.), (0., 1.)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
         let back = plate.iter().rev().copied().collect();
-        assert_eq!(bodies(&Stage::from_polygons(&[plate, back])).len(), 1);
+        assert_eq!(bodies(&Stage::from_polygons(&[plate, back])).list.len(), 1);
     }
 }

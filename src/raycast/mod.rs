@@ -20,7 +20,7 @@ pub mod specimen;
 mod tracer;
 mod witness;
 
-pub use bodies::bodies;
+pub use bodies::{Bodies, bodies};
 pub use builtin::BuiltinKernel;
 pub use coplanar::plane_groups;
 pub use embree::{EmbreeKernel, Packets};

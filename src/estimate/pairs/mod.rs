@@ -7,6 +7,7 @@ mod sides;
 mod sort;
 
 pub use left::Left;
+pub(super) use sides::{Side, sides};
 
 use crate::formfactor::{Effort, Hidden, hidden_exchange};
 use crate::math::Polytope;

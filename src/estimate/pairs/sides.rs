@@ -4,9 +4,11 @@ use crate::math::DVec3;
 use crate::scene::{NO_FACET, Patch, Stage};
 
 /// One side of a facet, with the patches on it that take part.
-pub(super) struct Side {
+pub(in crate::estimate) struct Side {
     /// The undivided polygon, counter-clockwise seen from the radiating side.
     pub polygon: Vec<DVec3>,
+    /// Its facet.
+    pub facet: usize,
     /// Numbers of the patches, ascending.
     pub patches: Vec<u32>,
     /// True if a patch on it emits.
@@ -17,7 +19,7 @@ pub(super) struct Side {
 
 /// Congruent parallelograms at `origin + a u + b v`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lattice {
+pub(in crate::estimate) struct Lattice {
     /// Step from column to column, m.
     pub u: DVec3,
     /// Step from row to row, m.
@@ -32,7 +34,7 @@ pub(super) struct Lattice {
 const CONGRUENT: f64 = 1e-12;
 
 /// All sides that have patches.
-pub(super) fn sides(stage: &Stage) -> Vec<Side> {
+pub(in crate::estimate) fn sides(stage: &Stage) -> Vec<Side> {
     let mut patches: Vec<[Vec<u32>; 2]> = vec![Default::default(); stage.facets.len()];
     for (i, patch) in stage.patches.iter().enumerate() {
         if patch.is_present() && patch.facet != NO_FACET {
@@ -44,7 +46,7 @@ pub(super) fn sides(stage: &Stage) -> Vec<Side> {
         }
     }
     let mut out = Vec::new();
-    for (facet, [front, back]) in stage.facets.iter().zip(patches) {
+    for (number, (facet, [front, back])) in stage.facets.iter().zip(patches).enumerate() {
         for (numbers, turned) in [(front, false), (back, true)] {
             if numbers.is_empty() {
                 continue;
@@ -55,7 +57,7 @@ pub(super) fn sides(stage: &Stage) -> Vec<Side> {
             }
             let lattice = lattice(stage, &numbers);
             let emits = numbers.iter().any(|i| stage.emission(*i as usize).iter().any(|e| *e > 0.0));
-            out.push(Side { polygon, patches: numbers, emits, lattice });
+            out.push(Side { polygon, facet: number, patches: numbers, emits, lattice });
         }
     }
     out

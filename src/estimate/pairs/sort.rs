@@ -5,7 +5,7 @@ use super::sides::{Side, sides};
 use super::{Coverage, PairPlan};
 use crate::formfactor::{facing, polygon_to_polygon};
 use crate::math::{Bounds, BoxTree, DVec3, Polytope};
-use crate::raycast::{Between, Shaft, bodies};
+use crate::raycast::{Between, Bodies, Shaft, bodies};
 use crate::scene::Stage;
 use rayon::prelude::*;
 
@@ -43,11 +43,11 @@ pub(super) struct Sorted {
 
 /// Sorts all pairs. `progress` is told how many patches are done.
 pub(super) fn sort(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64) + Sync)) -> Sorted {
-    let bodies = bodies(stage);
+    let Bodies { list: bodies, of_facet } = bodies(stage);
     let (lo, hi) = stage.bounds();
     let touching = TOUCHING * (hi - lo).length();
     let tree = BoxTree::new(bodies.iter().map(|b| Bounds::of(b.vertices()).grown(touching)).collect());
-    let scene = Scene { stage, sides: sides(stage), bodies, tree, touching, plan: *plan };
+    let scene = Scene { stage, sides: sides(stage), bodies, of_facet, tree, touching, plan: *plan };
     let of_side = |s: usize| {
         let found = scene.side(s);
         progress(scene.sides[s].patches.len() as u64);
@@ -71,6 +71,7 @@ struct Scene<'a> {
     stage: &'a Stage,
     sides: Vec<Side>,
     bodies: Vec<Polytope>,
+    of_facet: Vec<Option<u32>>,
     tree: BoxTree,
     touching: f64,
     plan: PairPlan,
@@ -104,7 +105,7 @@ impl Scene<'_> {
                 uncovered += pairs;
                 continue;
             }
-            match self.between(&side.polygon, &other.polygon, None) {
+            match self.between_sides(side, other) {
                 None | Some(Between::Wall) => unseen += pairs,
                 Some(between) => ahead.push(Ahead { side: t, between, alike: Congruent::of(side, other) }),
             }
@@ -121,17 +122,21 @@ impl Scene<'_> {
         covered
     }
 
-    /// What stands between two polygons; `None` if neither lies before the other. `known`: no other body does.
-    fn between(&self, a: &[DVec3], b: &[DVec3], known: Option<&[u32]>) -> Option<Between> {
-        let (a, b) = facing(a, b)?;
-        let shaft = Shaft::new(&a, &b, self.touching);
-        if let Some(list) = known {
-            return Some(shaft.between(&self.bodies, list.iter().copied()));
-        }
+    /// What stands between two sides; `None` if neither lies before the other.
+    fn between_sides(&self, one: &Side, other: &Side) -> Option<Between> {
+        let (a, b) = facing(&one.polygon, &other.polygon)?;
         let mut near = Vec::new();
         self.tree.near(&Bounds::of(&a).joined(Bounds::of(&b)), |k| near.push(k));
+        let own = [self.of_facet[one.facet], self.of_facet[other.facet]];
+        near.retain(|k| !own.contains(&Some(*k)));
         near.sort_unstable();
-        Some(shaft.between(&self.bodies, near.into_iter()))
+        Some(Shaft::new(&a, &b, self.touching).between(&self.bodies, near.into_iter()))
+    }
+
+    /// The same of two polygons, where only the bodies of a list can stand between.
+    fn between(&self, a: &[DVec3], b: &[DVec3], list: &[u32]) -> Option<Between> {
+        let (a, b) = facing(a, b)?;
+        Some(Shaft::new(&a, &b, self.touching).between(&self.bodies, list.iter().copied()))
     }
 
     /// The pairs of one patch with the sides ahead.
@@ -142,15 +147,13 @@ impl Scene<'_> {
             let other = &self.sides[a.side];
             let narrowed = match &a.between {
                 Between::Some(list) if self.sides[s].patches.len() > 1 && other.patches.len() > 1 => {
-                    self.between(corners, &other.polygon, Some(list))
+                    self.between(corners, &other.polygon, list)
                 }
                 all => Some(all.clone()),
             };
             for j in &other.patches {
                 let between = match &narrowed {
-                    Some(Between::Some(list)) => {
-                        self.between(corners, &self.stage.patches[*j as usize].corners, Some(list))
-                    }
+                    Some(Between::Some(list)) => self.between(corners, &self.stage.patches[*j as usize].corners, list),
                     all => all.clone(),
                 };
                 self.put(i, *j, s, a, between, &mut found);

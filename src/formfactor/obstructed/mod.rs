@@ -2,8 +2,11 @@
 
 mod cells;
 mod events;
+mod point;
 mod shadow;
 mod view;
+
+pub use point::PointView;
 
 use crate::math::{DVec3, Plane, Polytope, area};
 use shadow::Scratch;

@@ -3,6 +3,9 @@
 use super::view::{Body, View};
 use crate::math::{DVec2, DVec3};
 
+/// Heights over a plate below this share of the pair's extent are rounding.
+const EDGE_ON: f64 = 1e-13;
+
 /// Room for the polygons of one evaluation, used again and again.
 #[derive(Default)]
 pub(super) struct Scratch {
@@ -55,21 +58,33 @@ impl Pieces {
 impl View {
     /// `2 pi` times the form factor from the point `x` of the domain to the part of the target that the bodies hide.
     pub fn hidden(&self, x: DVec3, scratch: &mut Scratch) -> f64 {
+        if self.cast_shadows(x, scratch) {
+            return self.lambert(x, &self.target);
+        }
+        self.in_shadow(x, &self.target, scratch)
+    }
+
+    /// The shadows that the bodies throw from `x` on the target; true where one of them hides all of it.
+    pub fn cast_shadows(&self, x: DVec3, scratch: &mut Scratch) -> bool {
         scratch.shadows.resize_with(self.bodies.len(), Vec::new);
+        let slack = EDGE_ON * self.extent;
+        let all = self.bodies.iter().zip(&mut scratch.shadows);
+        // Whatever the others hide, the one that hides all does too.
+        all.fold(false, |hidden, (body, shadow)| body.shadow(x, &self.target, slack, shadow) == Shadow::Hides || hidden)
+    }
+
+    /// `2 pi` times the form factor from `x` to the part of a polygon on the target that lies in the shadows cast.
+    pub fn in_shadow(&self, x: DVec3, polygon: &[DVec2], scratch: &mut Scratch) -> f64 {
         let mut sum = 0.0;
-        for (k, body) in self.bodies.iter().enumerate() {
-            let (before, rest) = scratch.shadows.split_at_mut(k);
-            let shadow = &mut rest[0];
-            match body.shadow(x, &self.target, shadow) {
-                Shadow::Misses => continue,
-                // Whatever the others hide, this one does too.
-                Shadow::Hides => return self.lambert(x, &self.target),
-                Shadow::Cuts => {}
+        for k in 0..self.bodies.len() {
+            let (before, rest) = scratch.shadows.split_at(k);
+            let shadow = &rest[0];
+            if shadow.is_empty() || shadow.iter().any(|h| polygon.iter().all(|p| h.at(*p) <= 0.0)) {
+                continue;
             }
             scratch.part.clear();
-            scratch.part.extend_from_slice(&self.target);
+            scratch.part.extend_from_slice(polygon);
             if !cut_to(&mut scratch.part, &mut scratch.other, shadow) {
-                shadow.clear();
                 continue;
             }
             if before.iter().all(Vec::is_empty) {
@@ -94,7 +109,7 @@ impl View {
     }
 
     /// Lambert's sum over a polygon in the target's plane: `2 pi` times the form factor.
-    fn lambert(&self, x: DVec3, polygon: &[DVec2]) -> f64 {
+    pub fn lambert(&self, x: DVec3, polygon: &[DVec2]) -> f64 {
         let (foot, h, n) = (x.truncate(), x.z, self.normal);
         let mut sum = 0.0;
         let mut a = polygon[polygon.len() - 1] - foot;
@@ -121,11 +136,13 @@ enum Shadow {
 
 impl Body {
     /// Half-planes whose common part this body hides from `x`, as far as they cut the target.
-    fn shadow(&self, x: DVec3, target: &[DVec2], out: &mut Vec<HalfPlane>) -> Shadow {
+    fn shadow(&self, x: DVec3, target: &[DVec2], slack: f64, out: &mut Vec<HalfPlane>) -> Shadow {
         out.clear();
         let mut seen = 0u64;
+        // Of a plate seen edge-on, nobody can tell on which side of its edges it lies.
+        let above = if self.is_flat { slack } else { 0.0 };
         for (k, plane) in self.planes.iter().enumerate() {
-            if plane.height(x) > 0.0 {
+            if plane.height(x) > above {
                 seen |= 1 << (k & 63);
             }
         }

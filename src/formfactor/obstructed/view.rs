@@ -18,6 +18,8 @@ pub(super) struct View {
     pub bodies: Vec<Body>,
     /// Extent of the pair, m.
     pub extent: f64,
+    /// Origin and unit axes of the target's plane, in coordinates of the scene.
+    frame: [DVec3; 3],
 }
 
 /// A body in coordinates of the target.
@@ -71,12 +73,20 @@ impl View {
             target: target.iter().map(|p| place(*p).truncate()).collect(),
             bodies: bodies.iter().filter_map(cut).collect(),
             extent,
+            frame: [centre, e1, e2],
         }
     }
 
     /// The point of the domain with the given coordinates.
     pub fn point(&self, p: DVec2) -> DVec3 {
         self.origin + self.axes[0] * p.x + self.axes[1] * p.y
+    }
+
+    /// A polygon of the target's plane, in coordinates of that plane.
+    pub fn on_target(&self, polygon: &[DVec3], out: &mut Vec<DVec2>) {
+        let [centre, e1, e2] = self.frame;
+        out.clear();
+        out.extend(polygon.iter().map(|p| DVec2::new((*p - centre).dot(e1), (*p - centre).dot(e2))));
     }
 
     /// Height of a point over the plane of the domain.
