@@ -43,6 +43,14 @@ pub enum HemicubeError {
         /// What was asked for.
         got: u32,
     },
+    /// A hemi-cube that cannot stand where it is put.
+    #[error("hemicube: a hemi-cube of row {row} is not possible; {what}")]
+    BadStand {
+        /// Row it belongs to.
+        row: usize,
+        /// What it must be.
+        what: &'static str,
+    },
     /// Form factors of another scene.
     #[error("the form factors are for {got} patches and the scene has {expected}; compute them for this scene")]
     ForeignMatrix {

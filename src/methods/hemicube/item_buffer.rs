@@ -4,7 +4,7 @@ use super::delta::DeltaTable;
 use super::project::{FACES, Face};
 use super::raster::Item;
 use super::row::Hemicube;
-use super::solve::stand;
+use super::stand::{Stand, drawn, stand};
 use super::world::World;
 use super::{HemicubeError, Params};
 use crate::math::{DVec3, Frame};
@@ -19,23 +19,35 @@ pub struct ItemBuffer {
     pub eye: DVec3,
     /// Its axes; z is the patch normal.
     pub frame: Frame,
+    /// Where in its pixels it looks, from their centres, pixels.
+    pub shift: [f64; 2],
     /// Items of the faces in the order of [`Face::ALL`], row by row, row 0 at the horizon (sides) or at y = -1.
     pub faces: [Vec<Item>; FACES],
 }
 
-/// The item buffer of the hemi-cube on a patch; `None` if the patch takes no part or does not exist.
+/// The item buffer of the hemi-cube on a patch, as `params` has it turned and shifted; `None` if the patch takes no
+/// part or does not exist.
 pub fn item_buffer(stage: &Stage, patch: usize, params: &Params) -> Result<Option<ItemBuffer>, HemicubeError> {
     let params = params.validated()?;
-    let Some((eye, frame)) = stage.patches.get(patch).and_then(|p| stand(p, &params)) else { return Ok(None) };
+    let one = stage.patches.get(patch).and_then(|p| stand(p, &params)).map(|(eye, frame)| Stand::at(eye, frame));
+    let one = drawn(one.into_iter().collect(), patch, &params).first().copied();
+    one.map(|stand| item_buffer_at(stage, &stand, &params)).transpose()
+}
+
+/// The item buffer of a hemi-cube anywhere.
+pub fn item_buffer_at(stage: &Stage, stand: &Stand, params: &Params) -> Result<ItemBuffer, HemicubeError> {
+    let params = params.validated()?;
+    stand.validated(0)?;
     let (world, table) = (World::new(stage), DeltaTable::new(params.resolution, params.delta));
     let mut cube = Hemicube::new(&world, &table);
-    cube.aim(eye, &frame);
+    cube.aim_at(stand);
     let faces = Face::ALL.map(|face| {
         cube.project(face);
         cube.scan(face);
         cube.items().to_vec()
     });
-    Ok(Some(ItemBuffer { resolution: params.resolution as usize, eye, frame, faces }))
+    let Stand { eye, frame, shift, .. } = *stand;
+    Ok(ItemBuffer { resolution: params.resolution as usize, eye, frame, shift, faces })
 }
 
 impl ItemBuffer {
@@ -44,10 +56,10 @@ impl ItemBuffer {
         self.faces.iter().flatten().filter(|i| **i == item).count()
     }
 
-    /// World direction (of no particular length) through the centre of a pixel.
+    /// World direction (of no particular length) through the point of a pixel where it is sampled.
     pub fn direction(&self, face: Face, column: usize, row: usize) -> DVec3 {
-        let at = |k: usize, start: f64| start + (k as f64 + 0.5) * 2.0 / self.resolution as f64;
-        let v = at(row, if face == Face::Top { -1.0 } else { 0.0 });
-        self.frame.to_world(face.to_frame(DVec3::new(1.0, at(column, -1.0), v)))
+        let at = |k: usize, shift: f64, start: f64| start + (k as f64 + 0.5 + shift) * 2.0 / self.resolution as f64;
+        let v = at(row, self.shift[1], if face == Face::Top { -1.0 } else { 0.0 });
+        self.frame.to_world(face.to_frame(DVec3::new(1.0, at(column, self.shift[0], -1.0), v)))
     }
 }

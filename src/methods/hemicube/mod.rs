@@ -15,14 +15,16 @@ mod project;
 mod raster;
 mod row;
 mod solve;
+mod stand;
 mod world;
 
 pub use delta::{DeltaTable, Pixel, delta_side, delta_top};
 pub use error::HemicubeError;
-pub use item_buffer::{ItemBuffer, item_buffer};
+pub use item_buffer::{ItemBuffer, item_buffer, item_buffer_at};
 pub use params::{Delta, Params};
 pub use project::{FACES, Face};
 pub use raster::Item;
 pub use row::{Hemicube, Lost};
-pub use solve::{element_form_factors, form_factors, solve, solve_with, stand};
+pub use solve::{element_form_factors, form_factors, rows_of, solve, solve_with};
+pub use stand::{Stand, divided, drawn, stand, stands};
 pub use world::{World, centre};

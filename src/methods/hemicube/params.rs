@@ -1,11 +1,15 @@
-//! What a hemi-cube can be told, and how it is written: `resolution=200,delta=exact,rotation=30,tolerance=0.1%`.
+//! What a hemi-cube can be told, and how it is written: `resolution=200,delta=exact,rotation=30,tolerance=0.1%`,
+//! and `turn=7,jitter=7` where hemi-cubes are turned and shifted at random.
 
 use super::HemicubeError;
 use std::fmt;
 use std::str::FromStr;
 
 /// Keys of the written form.
-const KEYS: &str = "resolution, delta, rotation, tolerance";
+const KEYS: &str = "resolution, delta, rotation, tolerance, turn, jitter";
+
+/// What a seed must be.
+const SEED: &str = "a seed, a whole number from 0 to 18446744073709551615";
 
 /// How the delta form factor of a pixel is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,11 +33,17 @@ pub struct Params {
     pub rotation: f64,
     /// Gauss-Seidel stops when no radiosity changes by more than this fraction of itself.
     pub tolerance: f64,
+    /// Seed of random turns: every hemi-cube is turned further about its normal by an angle of its own, even over
+    /// [0, 90) degrees, so that pixels and edges of neighbours do not line up in the same way. `None`: not turned.
+    pub turn: Option<u64>,
+    /// Seed of random shifts: every hemi-cube looks through a point of its own within its pixels, even over the
+    /// pixel and the same in all its pixels, so that beats become noise. `None`: through the centres.
+    pub jitter: Option<u64>,
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self { resolution: 100, delta: Delta::Midpoint, rotation: 0.0, tolerance: 1e-3 }
+        Self { resolution: 100, delta: Delta::Midpoint, rotation: 0.0, tolerance: 1e-3, turn: None, jitter: None }
     }
 }
 
@@ -61,6 +71,8 @@ impl Params {
             "delta" => self.delta = delta(value)?,
             "rotation" => self.rotation = number(key, value, "an angle in degrees")?,
             "tolerance" => self.tolerance = fraction(key, value)?,
+            "turn" => self.turn = Some(number(key, value, SEED)?),
+            "jitter" => self.jitter = Some(number(key, value, SEED)?),
             _ => return Err(HemicubeError::UnknownKey { key: key.to_string(), keys: KEYS }),
         }
         Ok(())
@@ -97,7 +109,9 @@ impl fmt::Display for Params {
             Delta::Exact => "exact",
         };
         let Self { resolution, rotation, tolerance, .. } = self;
-        write!(f, "resolution={resolution},delta={delta},rotation={rotation},tolerance={tolerance}")
+        write!(f, "resolution={resolution},delta={delta},rotation={rotation},tolerance={tolerance}")?;
+        self.turn.map_or(Ok(()), |seed| write!(f, ",turn={seed}"))?;
+        self.jitter.map_or(Ok(()), |seed| write!(f, ",jitter={seed}"))
     }
 }
 
@@ -133,7 +147,12 @@ mod tests {
     #[test]
     fn what_is_written_is_read_back() {
         let p = Params::parse("resolution=50, delta=exact,tolerance = 0.5%").unwrap();
-        assert_eq!(p, Params { resolution: 50, delta: Delta::Exact, rotation: 0.0, tolerance: 0.005 });
+        assert_eq!(p, Params { resolution: 50, delta: Delta::Exact, rotation: 0.0, tolerance: 0.005, ..Params::default() });
+        assert_eq!(p.to_string(), "resolution=50,delta=exact,rotation=0,tolerance=0.005");
+        let random = Params::parse("turn=3,jitter=18446744073709551615").unwrap();
+        assert_eq!((random.turn, random.jitter), (Some(3), Some(u64::MAX)));
+        assert_eq!(random.to_string().parse::<Params>().unwrap(), random);
+        assert!(Params { jitter: None, ..random }.to_string().ends_with("tolerance=0.001,turn=3"));
         assert_eq!(p.to_string().parse::<Params>().unwrap(), p);
         assert_eq!(Params::parse("").unwrap(), Params::default());
     }
@@ -152,6 +171,7 @@ mod tests {
         assert!(said("rotation=nan").contains("degrees"));
         assert!(said("tolerance=0").contains("fraction"));
         assert!(said("tolerance=100%").contains("fraction"));
+        assert!(said("turn=-1").contains("turn cannot be `-1`") && said("jitter=0.5").contains("whole number"));
         assert!(said("rotation=1,rotation=2").contains("twice"));
     }
 }

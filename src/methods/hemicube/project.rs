@@ -93,7 +93,7 @@ struct Candidate {
 }
 
 /// A polygon on a face: its points in pixel coordinates, and 1 / depth as a linear function of them.
-/// Pixel (column, row) has its centre at integer coordinates.
+/// Pixel (column, row) has its sampling point, without a shift its centre, at integer coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projected {
     /// First of its points.
@@ -104,6 +104,26 @@ pub(super) struct Projected {
     pub item: Item,
     /// `1 / depth = nearness[0] + nearness[1] column + nearness[2] row`.
     pub nearness: [f64; 3],
+}
+
+/// The pixels of a face and where in them it is sampled.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PixelGrid {
+    /// Pixels along an edge of the top.
+    pub resolution: usize,
+    /// The sampling point from the pixel's centre, pixels along columns and rows.
+    shift: [f64; 2],
+}
+
+impl PixelGrid {
+    /// Sampling points stay within their pixels by this much: on the rim of a face they would belong to two.
+    const MARGIN: f64 = 1.0 / (1u64 << 20) as f64;
+
+    /// Shifts within -0.5 to 0.5.
+    pub fn new(resolution: usize, shift: [f64; 2]) -> Self {
+        let most = 0.5 - Self::MARGIN;
+        Self { resolution, shift: shift.map(|s| s.clamp(-most, most)) }
+    }
 }
 
 /// Polygons projected onto one face.
@@ -169,7 +189,7 @@ impl Projector {
     }
 
     /// Clips the candidates to a face's frustum and projects what is left.
-    pub fn project(&mut self, world: &World, face: Face, resolution: usize, out: &mut Projection) {
+    pub fn project(&mut self, world: &World, face: Face, grid: &PixelGrid, out: &mut Projection) {
         out.points.clear();
         out.polygons.clear();
         let outside = face.outside();
@@ -184,7 +204,7 @@ impl Projector {
                 self.clip(face);
             }
             if self.clipped.len() >= 3 {
-                out.push(&self.clipped, face, resolution, &c);
+                out.push(&self.clipped, face, grid, &c);
             }
         }
     }
@@ -220,18 +240,19 @@ impl Projector {
 }
 
 impl Projection {
-    fn push(&mut self, polygon: &[DVec3], face: Face, resolution: usize, c: &Candidate) {
-        let half = 0.5 * resolution as f64;
+    fn push(&mut self, polygon: &[DVec3], face: Face, grid: &PixelGrid, c: &Candidate) {
+        let half = 0.5 * grid.resolution as f64;
+        let [x, y] = grid.shift;
         // Row 0 starts at v = -1 on the top, at the horizon on a side.
         let v0 = if face == Face::Top { 1.0 } else { 0.0 };
         let first = self.points.len() as u32;
         for q in polygon {
             let inverse = half / q.x;
-            self.points.push([q.y * inverse + half - 0.5, q.z * inverse + v0 * half - 0.5]);
+            self.points.push([q.y * inverse + half - 0.5 - x, q.z * inverse + v0 * half - 0.5 - y]);
         }
         let n = face.coordinates(c.normal) / c.offset;
         let (du, dv) = (n.y / half, n.z / half);
-        let nearness = [n.x - n.y - n.z * v0 + 0.5 * (du + dv), du, dv];
+        let nearness = [n.x - n.y - n.z * v0 + 0.5 * (du + dv) + (x * du + y * dv), du, dv];
         self.polygons.push(Projected { first, last: self.points.len() as u32, item: c.item, nearness });
     }
 }

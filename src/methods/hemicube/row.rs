@@ -1,8 +1,9 @@
 //! One row of form factors: the hemi-cube of one patch, from aiming to the sum.
 
 use super::delta::DeltaTable;
-use super::project::{Face, Projection, Projector};
+use super::project::{Face, PixelGrid, Projection, Projector};
 use super::raster::{Item, Raster};
+use super::stand::Stand;
 use super::world::World;
 use crate::math::{DVec3, Frame};
 
@@ -23,6 +24,7 @@ pub struct Lost {
 pub struct Hemicube<'a> {
     world: &'a World,
     table: &'a DeltaTable,
+    grid: PixelGrid,
     projector: Projector,
     projection: Projection,
     raster: Raster,
@@ -36,6 +38,7 @@ impl<'a> Hemicube<'a> {
         Self {
             world,
             table,
+            grid: PixelGrid::new(2 * table.half(), [0.0; 2]),
             projector: Projector::default(),
             projection: Projection::default(),
             raster: Raster::default(),
@@ -47,7 +50,12 @@ impl<'a> Hemicube<'a> {
     /// Form factors from a point with a frame (z the normal) to all patches: (patch, form factor) by patch
     /// number, zeros left out, and what is lost [CG85 eq. 7].
     pub fn row(&mut self, eye: DVec3, frame: &Frame) -> (Vec<(u32, f64)>, Lost) {
-        self.aim(eye, frame);
+        self.row_at(&Stand::at(eye, *frame))
+    }
+
+    /// The same from a stand, its shift included; the weight is left to who takes the mean.
+    pub fn row_at(&mut self, stand: &Stand) -> (Vec<(u32, f64)>, Lost) {
+        self.aim_at(stand);
         for face in Face::ALL {
             self.project(face);
             self.scan(face);
@@ -61,14 +69,20 @@ impl<'a> Hemicube<'a> {
         self.raster.items()
     }
 
-    /// Moves the hemi-cube.
+    /// Moves the hemi-cube; it looks through the centres of its pixels.
     pub fn aim(&mut self, eye: DVec3, frame: &Frame) {
-        self.projector.aim(self.world, eye, frame);
+        self.aim_at(&Stand::at(eye, *frame));
+    }
+
+    /// Moves the hemi-cube to a stand.
+    pub fn aim_at(&mut self, stand: &Stand) {
+        self.grid = PixelGrid::new(self.grid.resolution, stand.shift);
+        self.projector.aim(self.world, stand.eye, &stand.frame);
     }
 
     /// Clips and projects the environment onto a face. Returns the number of polygons on it.
     pub fn project(&mut self, face: Face) -> usize {
-        self.projector.project(self.world, face, 2 * self.table.half(), &mut self.projection);
+        self.projector.project(self.world, face, &self.grid, &mut self.projection);
         self.projection.polygons.len()
     }
 
