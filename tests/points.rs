@@ -5,7 +5,7 @@ use etalon::formfactor::PointView;
 use etalon::io::scene::builtin;
 use etalon::math::{DVec3, Polytope};
 use etalon::methods::hemicube::{self, Delta, Params};
-use etalon::scene::Stage;
+use etalon::scene::{Patch, Stage};
 use rayon::prelude::*;
 
 fn stage(name: &str) -> Stage {
@@ -52,20 +52,20 @@ fn known_values_past_plates() {
 /// In a closed room whose backs nobody sees, everything that a point sees adds up to one.
 #[test]
 fn rows_of_closed_rooms_sum_to_one() {
-    for name in ["furnace", "furnace-l", "cornell-box-coarse", "furnished-room", "cube-room", "robot-room"] {
+    for name in ["furnace", "furnace-l", "furnished-room", "cube-room", "robot-room"] {
         let stage = stage(name);
-        let stands = (0..stage.patches.len()).filter_map(|i| hemicube::stand(&stage.patches[i], &Params::default()));
+        let stand = |p: &Patch| hemicube::stand(p, &Params::default()).map(|(eye, frame)| (p.facet, eye, frame.z));
         let sight = PointSight::new(&stage);
-        let all: Vec<_> = stands.collect();
+        let all: Vec<_> = stage.patches.iter().filter_map(stand).collect();
         let some: Vec<_> = all.iter().step_by(all.len().div_ceil(300)).collect();
-        let gap = |s: &&(DVec3, etalon::math::Frame)| {
-            let sum: f64 = sight.row(s.0, s.1.z).iter().map(|s| s.seen).sum();
+        let gap = |s: &&(u32, DVec3, DVec3)| {
+            let sum: f64 = sight.row(s.0, s.1, s.2).iter().map(|s| s.seen).sum();
             (1.0 - sum).abs()
         };
         let worst = some.par_iter().map(gap).reduce(|| 0.0, f64::max);
         println!("{name}: {} points, worst gap {worst:.1e}", some.len());
-        let open = name.starts_with("cornell");
-        assert!(open || worst < 1e-11, "{name}: {worst}");
+        // Corners of the vase are rounded to nine digits, and its quadrilaterals are as flat as that.
+        assert!(worst < if name == "robot-room" { 2e-9 } else { 1e-13 }, "{name}: {worst}");
     }
 }
 
@@ -80,7 +80,7 @@ fn fine_hemicubes_come_to_it() {
         let rows = (0..f.n).into_par_iter().filter(|i| f.row(*i).next().is_some());
         let of = |i: usize| {
             let (eye, frame) = hemicube::stand(&stage.patches[i], &params).expect("a row");
-            let exact = sight.row(eye, frame.z);
+            let exact = sight.row(stage.patches[i].facet, eye, frame.z);
             exact.iter().map(|s| (f.get(i, s.patch as usize) - s.seen).powi(2)).sum::<f64>()
         };
         rows.map(of).sum::<f64>().sqrt()

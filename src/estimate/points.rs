@@ -42,34 +42,48 @@ impl<'a> PointSight<'a> {
         Self { stage, sides: sides(stage), bodies, tree, touching }
     }
 
-    /// All patches that `point` sees over the horizon of the unit vector `normal`, ascending.
-    pub fn row(&self, point: DVec3, normal: DVec3) -> Vec<Sight> {
-        self.row_of(point, normal, |_| true)
+    /// All patches that a point of a facet sees over the horizon of the unit vector `normal`, ascending.
+    pub fn row(&self, facet: u32, point: DVec3, normal: DVec3) -> Vec<Sight> {
+        self.row_of(facet, point, normal, |_| true)
     }
 
     /// The same of the patches that `wanted` holds of.
-    pub fn row_of(&self, point: DVec3, normal: DVec3, wanted: impl Fn(u32) -> bool) -> Vec<Sight> {
+    pub fn row_of(&self, facet: u32, point: DVec3, normal: DVec3, wanted: impl Fn(u32) -> bool) -> Vec<Sight> {
         let mut row = Vec::new();
+        let own = self.bodies.of_facet.get(facet as usize).copied().flatten();
         for side in self.sides.iter().filter(|s| s.patches.iter().any(|j| wanted(*j))) {
-            self.see(point, normal, side, &wanted, &mut row);
+            let Some(whole) = facing_point(point, normal, &side.polygon) else { continue };
+            if let Some(few) = self.between(point, normal, own, side, &whole) {
+                self.see(PointView::new(point, normal, &whole, &few), side, &wanted, &mut row);
+            }
         }
         row.sort_unstable_by_key(|s| s.patch);
         row
     }
 
-    fn see(&self, point: DVec3, normal: DVec3, side: &Side, wanted: &impl Fn(u32) -> bool, row: &mut Vec<Sight>) {
-        let Some(whole) = facing_point(point, normal, &side.polygon) else { return };
-        let shaft = Shaft::from_point(point, normal, &whole, self.touching);
+    /// The bodies that may stand between a point and a side; `None` where one stands before all of it.
+    fn between(
+        &self,
+        point: DVec3,
+        normal: DVec3,
+        own: Option<u32>,
+        side: &Side,
+        whole: &[DVec3],
+    ) -> Option<Vec<&Polytope>> {
         let mut near = Vec::new();
-        self.tree.near(&Bounds::of(&whole).joined(Bounds::of(&[point])), |k| near.push(k));
-        near.retain(|k| self.bodies.of_facet[side.facet] != Some(*k));
+        self.tree.near(&Bounds::of(whole).joined(Bounds::of(&[point])), |k| near.push(k));
+        // What has rounded corners may reach before its own plane.
+        near.retain(|k| own != Some(*k) && self.bodies.of_facet[side.facet] != Some(*k));
         near.sort_unstable();
-        let few: Vec<&Polytope> = match shaft.between(&self.bodies.list, near.into_iter()) {
-            Between::Wall => return,
-            Between::Nothing => Vec::new(),
-            Between::Some(few) => few.iter().map(|k| &self.bodies.list[*k as usize]).collect(),
-        };
-        let mut view = PointView::new(point, normal, &whole, &few);
+        let shaft = Shaft::from_point(point, normal, whole, self.touching);
+        match shaft.between(&self.bodies.list, near.into_iter()) {
+            Between::Wall => None,
+            Between::Nothing => Some(Vec::new()),
+            Between::Some(few) => Some(few.iter().map(|k| &self.bodies.list[*k as usize]).collect()),
+        }
+    }
+
+    fn see(&self, mut view: PointView, side: &Side, wanted: &impl Fn(u32) -> bool, row: &mut Vec<Sight>) {
         for j in side.patches.iter().copied().filter(|j| wanted(*j)) {
             let (mut open, mut seen) = (0.0, 0.0);
             for piece in &self.stage.patches[j as usize].region.pieces {

@@ -139,8 +139,9 @@ impl Body {
     fn shadow(&self, x: DVec3, target: &[DVec2], slack: f64, out: &mut Vec<HalfPlane>) -> Shadow {
         out.clear();
         let mut seen = 0u64;
-        // Of a plate seen edge-on, nobody can tell on which side of its edges it lies.
-        let above = if self.is_flat { slack } else { 0.0 };
+        // Of a plate seen edge-on, within what its corners are out of its plane, nobody can tell on which side of its
+        // edges it lies.
+        let above = if self.is_flat { slack.max(self.warp * self.centre.distance(x)) } else { 0.0 };
         for (k, plane) in self.planes.iter().enumerate() {
             if plane.height(x) > above {
                 seen |= 1 << (k & 63);

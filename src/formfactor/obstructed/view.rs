@@ -34,10 +34,15 @@ pub(super) struct Body {
     pub centre: DVec3,
     /// True for a polygon without thickness.
     pub is_flat: bool,
+    /// Angle under which the corners of a plate may seem to lie out of its plane, with a margin.
+    pub warp: f64,
 }
 
 /// Share of the extent below which heights are rounding.
 const SLACK: f64 = 1e-12;
+
+/// Margin over what rounded corners are out of a plane.
+const MARGIN: f64 = 4.0;
 
 impl View {
     /// The view of `target` from `domain`, both cut to what lies in front of the other already. Bodies that cannot
@@ -50,8 +55,13 @@ impl View {
         let into = |v: DVec3| DVec3::new(v.dot(e1), v.dot(e2), v.dot(far.normal));
         let place = |p: DVec3| into(p - centre);
         let extent = domain.iter().chain(target).map(|p| p.distance(centre)).fold(0.0, f64::max);
-        let slack = SLACK * extent;
+        let rounding = SLACK * extent + MARGIN * (out_of_plane(&near, domain) + out_of_plane(&far, target));
         let cut = |b: &&Polytope| {
+            // A corner shared with the target may stick out of a plane as far as corners are rounded: a sliver that
+            // hides nothing, but whose edges point anywhere.
+            let out = b.planes().iter().map(|p| if b.is_flat() { out_of_plane(p, b.vertices()) } else { above(p, b) });
+            let out = out.fold(0.0, f64::max);
+            let slack = rounding + MARGIN * out;
             let front = b.in_front(&near, slack)?.in_front(&far, slack)?;
             let plane = |p: &Plane| Plane { normal: into(p.normal), offset: -p.height(centre) };
             Some(Body {
@@ -60,6 +70,7 @@ impl View {
                 edges: front.edges().to_vec(),
                 centre: place(front.centre()),
                 is_flat: front.is_flat(),
+                warp: if front.is_flat() { MARGIN * out / size(&front) } else { 0.0 },
             })
         };
         let f1 = longest_edge(domain);
@@ -99,6 +110,21 @@ impl View {
         let w = p - self.origin;
         DVec2::new(w.dot(self.axes[0]), w.dot(self.axes[1]))
     }
+}
+
+/// How far corners lie out of their plane, m.
+fn out_of_plane(plane: &Plane, corners: &[DVec3]) -> f64 {
+    corners.iter().map(|v| plane.height(*v).abs()).fold(0.0, f64::max)
+}
+
+/// How far corners of a solid rise above one of its faces, m: rounding.
+fn above(plane: &Plane, body: &Polytope) -> f64 {
+    body.vertices().iter().map(|v| plane.height(*v)).fold(0.0, f64::max)
+}
+
+/// Reach of a body from its centre, m.
+fn size(body: &Polytope) -> f64 {
+    body.vertices().iter().map(|v| v.distance(body.centre())).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 fn longest_edge(polygon: &[DVec3]) -> DVec3 {

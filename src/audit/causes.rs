@@ -1,0 +1,253 @@
+//! The error of every form factor of a hemi-cube, split by cause.
+//!
+//! With `F_pt` the exact value at the hemi-cube's centre, `F` the area average, and a ring for "nothing between":
+//!
+//! - aliasing = F_cube - F_pt: pixels stand for areas;
+//! - proximity = F_pt° - F°: one point stands for the patch;
+//! - visibility = (F_pt - F_pt°) - (F - F°): one point stands for what the patch sees past others.
+//!
+//! They add up to F_cube - F. Of a pair that is wholly hidden, from the centre and from the whole patch, "nothing
+//! between" says nothing: all its error is aliasing. The names are those of Baum, Rushmeier and Winget 1989.
+
+use crate::estimate::{PointSight, Sight, open_factor, open_mean};
+use crate::math::{DVec3, Frame};
+use crate::scene::Stage;
+use crate::solution::FormFactors;
+use rayon::prelude::*;
+
+/// Rounding of closed forms, absolute and relative: what they are tested to.
+const ROUNDING: (f64, f64) = (3e-14, 5e-12);
+
+/// Why a form factor of a hemi-cube is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Cause {
+    /// A pixel shows one thing and stands for an area.
+    Aliasing,
+    /// The centre stands for the patch: too near, too large.
+    Proximity,
+    /// What the centre sees past others stands for what the patch sees.
+    Visibility,
+}
+
+impl Cause {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Aliasing, Self::Proximity, Self::Visibility];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Aliasing => "aliasing",
+            Self::Proximity => "proximity",
+            Self::Visibility => "visibility",
+        }
+    }
+}
+
+/// One pair, taken apart.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pair {
+    /// As the hemi-cube has it.
+    pub cube: f64,
+    /// From the centre, exact: what a hemi-cube of infinite resolution would find.
+    pub point: f64,
+    /// From the centre with nothing between.
+    pub open_point: f64,
+    /// The area average: the truth.
+    pub mean: f64,
+    /// Its standard error.
+    pub mean_error: f64,
+    /// The area average with nothing between.
+    pub open_mean: f64,
+}
+
+impl Pair {
+    /// Hemi-cube minus truth.
+    pub fn error(&self) -> f64 {
+        self.cube - self.mean
+    }
+
+    /// The part that a cause has in it. The three add up to [`Pair::error`].
+    pub fn part(&self, cause: Cause) -> f64 {
+        match cause {
+            Cause::Aliasing => self.cube - self.point,
+            Cause::Proximity => self.open_point - self.open_mean,
+            Cause::Visibility => (self.point - self.open_point) - (self.mean - self.open_mean),
+        }
+    }
+
+    /// Standard error of that part.
+    pub fn std_err(&self, cause: Cause) -> f64 {
+        let rounding = |f: f64| ROUNDING.0 + ROUNDING.1 * f;
+        match cause {
+            Cause::Aliasing => rounding(self.point),
+            Cause::Proximity => rounding(self.open_point).max(rounding(self.open_mean)),
+            Cause::Visibility if self.open_point == self.point && self.open_mean == self.mean => {
+                rounding(self.open_point)
+            }
+            Cause::Visibility => self.mean_error.max(rounding(self.open_mean)),
+        }
+    }
+
+    fn scaled(self, by: f64) -> Self {
+        Self {
+            cube: self.cube * by,
+            point: self.point * by,
+            open_point: self.open_point * by,
+            mean: self.mean * by,
+            mean_error: self.mean_error * by,
+            open_mean: self.open_mean * by,
+        }
+    }
+}
+
+/// All pairs of which anything is seen: by the hemi-cube, from the centre, or from the patch. Compressed rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Split {
+    /// Row i holds `row_starts[i] .. row_starts[i + 1]`.
+    pub row_starts: Vec<usize>,
+    /// Column of each pair, ascending within a row.
+    pub columns: Vec<u32>,
+    /// The pairs.
+    pub pairs: Vec<Pair>,
+}
+
+/// What the area averages come from.
+#[derive(Clone, Copy)]
+pub struct Truth<'a> {
+    /// The judge's form factors, with standard errors.
+    pub form_factors: &'a FormFactors,
+    /// Standard error of a pair that has no entry: nothing for one that is proved to be nothing, one hit for one that
+    /// no ray has hit.
+    pub unseen_error: &'a (dyn Fn(usize, usize) -> f64 + Sync),
+}
+
+impl Split {
+    /// Takes every pair of a matrix apart. `stands` says where the hemi-cubes stand. `progress` is told of rows done.
+    pub fn of(
+        stage: &Stage,
+        stands: &[Option<(DVec3, Frame)>],
+        cube: &FormFactors,
+        truth: Truth,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Self {
+        let sight = PointSight::new(stage);
+        let row = |i: usize| {
+            let Some((eye, frame)) = stands[i] else { return Vec::new() };
+            let seen = sight.row(stage.patches[i].facet, eye, frame.z);
+            let row = merged(i, &seen, cube, truth);
+            let row = row.into_iter().map(|(j, pair)| (j, opened(stage, i, j, pair, eye, frame.z))).collect();
+            progress(1);
+            row
+        };
+        Self::from_rows((0..stands.len()).into_par_iter().map(row).collect())
+    }
+
+    fn from_rows(rows: Vec<Vec<(u32, Pair)>>) -> Self {
+        let mut split = Self { row_starts: vec![0], columns: Vec::new(), pairs: Vec::new() };
+        for row in rows {
+            for (j, pair) in row {
+                split.columns.push(j);
+                split.pairs.push(pair);
+            }
+            split.row_starts.push(split.columns.len());
+        }
+        split
+    }
+
+    /// Number of patches.
+    pub fn len(&self) -> usize {
+        self.row_starts.len() - 1
+    }
+
+    /// True if there are no patches.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// (column, pair) of a row.
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, &Pair)> + '_ {
+        let span = self.row_starts[i]..self.row_starts[i + 1];
+        self.columns[span.clone()].iter().zip(&self.pairs[span]).map(|(j, p)| (*j as usize, p))
+    }
+
+    /// One pair; `None` where nothing is seen of it.
+    pub fn get(&self, i: usize, j: usize) -> Option<&Pair> {
+        let span = self.row_starts[i]..self.row_starts[i + 1];
+        let k = self.columns[span.clone()].binary_search(&(j as u32)).ok()?;
+        self.pairs.get(span.start + k)
+    }
+
+    /// A matrix on the same pairs.
+    pub fn matrix(&self, of: impl Fn(&Pair) -> f64) -> FormFactors {
+        FormFactors {
+            n: self.len(),
+            row_starts: self.row_starts.clone(),
+            columns: self.columns.clone(),
+            values: self.pairs.iter().map(of).collect(),
+            std_err: None,
+        }
+    }
+
+    /// The same pairs as progressive refinement uses them: the hemi-cube stands at the shooter j, and reciprocity
+    /// brings `F_ij = F_ji A_j / A_i` to the receivers [GSG90 eq. 2].
+    pub fn from_shooters(&self, stage: &Stage) -> Self {
+        let mut rows: Vec<Vec<(u32, Pair)>> = vec![Vec::new(); self.len()];
+        for shooter in 0..self.len() {
+            for (receiver, pair) in self.row(shooter) {
+                let area = stage.patches[receiver].area;
+                if area > 0.0 {
+                    rows[receiver].push((shooter as u32, pair.scaled(stage.patches[shooter].area / area)));
+                }
+            }
+        }
+        Self::from_rows(rows)
+    }
+}
+
+/// The union of three rows, by column.
+fn merged(i: usize, seen: &[Sight], cube: &FormFactors, truth: Truth) -> Vec<(u32, Pair)> {
+    let span = |f: &FormFactors| f.row_starts[i]..f.row_starts[i + 1];
+    let f = truth.form_factors;
+    let mut columns: Vec<u32> = seen.iter().map(|s| s.patch).collect();
+    columns.extend(&cube.columns[span(cube)]);
+    columns.extend(&f.columns[span(f)]);
+    columns.sort_unstable();
+    columns.dedup();
+    let (mut points, mut cubes, mut means) = (seen.iter().peekable(), span(cube).peekable(), span(f).peekable());
+    let pair = |j: u32| {
+        let mut pair = Pair::default();
+        if let Some(s) = points.next_if(|s| s.patch == j) {
+            (pair.point, pair.open_point) = (s.seen, s.open);
+        }
+        if let Some(k) = cubes.next_if(|k| cube.columns[*k] == j) {
+            pair.cube = cube.values[k];
+        }
+        match means.next_if(|k| f.columns[*k] == j) {
+            Some(k) => (pair.mean, pair.mean_error) = (f.values[k], f.std_err.as_ref().map_or(0.0, |e| e[k])),
+            None => pair.mean_error = (truth.unseen_error)(i, j as usize),
+        }
+        (j, pair)
+    };
+    columns.into_iter().map(pair).collect()
+}
+
+/// Adds what there would be with nothing between, unless nothing is seen anyhow.
+fn opened(stage: &Stage, i: usize, j: u32, mut pair: Pair, eye: DVec3, normal: DVec3) -> Pair {
+    let (from, to) = (&stage.patches[i].region, &stage.patches[j as usize].region);
+    if pair.point == 0.0 && pair.mean == 0.0 {
+        return pair;
+    }
+    if pair.point == 0.0 {
+        pair.open_point = open_factor(eye, normal, to);
+    }
+    pair.open_mean = open_mean(from, to);
+    // Within the error of the whole it is the whole: the two were computed by different sums.
+    if (pair.mean - pair.open_mean).abs() <= 2.0 * (ROUNDING.0 + ROUNDING.1 * pair.mean) {
+        pair.open_mean = pair.mean;
+    }
+    if (pair.point - pair.open_point).abs() <= ROUNDING.0 {
+        pair.open_point = pair.point;
+    }
+    pair
+}

@@ -1,0 +1,106 @@
+//! Who brings the errors: sources by what they contribute to the error of the light, not by how bright they are.
+
+use super::causes::{Cause, Split};
+use crate::math::compensated_sum;
+use crate::methods::PatchVectors;
+use crate::scene::Stage;
+use std::collections::BTreeMap;
+
+/// A surface as a source of error.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Source {
+    /// Name of the surface.
+    pub name: String,
+    /// Its patches, ascending.
+    pub patches: Vec<u32>,
+    /// Mean luminance that leaves it.
+    pub luminance: f64,
+    /// `sqrt(sum A dY^2 / sum A Y^2)` over the receivers: the error that the form factors to this source bring to
+    /// reflected light at the first bounce, as a share of all reflected light.
+    pub error: f64,
+    /// The same of each cause alone, in the order of [`Cause::ALL`].
+    pub by_cause: [f64; 3],
+}
+
+impl Source {
+    /// The cause with the largest share.
+    pub fn main_cause(&self) -> Cause {
+        let largest = (0..3).max_by(|a, b| self.by_cause[*a].total_cmp(&self.by_cause[*b]));
+        Cause::ALL[largest.unwrap_or(0)]
+    }
+}
+
+/// First-bounce errors of receivers, in luminance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FirstBounce {
+    /// By receiver and cause.
+    pub receivers: Vec<[f64; 3]>,
+    /// Standard errors of those.
+    pub std_err: Vec<[f64; 3]>,
+    /// Surfaces, the largest error first.
+    pub sources: Vec<Source>,
+}
+
+/// What the pairs do at the first bounce from radiosities `b` (n x bands), by receiver and by source. `reflected`:
+/// reflected luminance of the receivers, what errors are related to.
+pub fn first_bounce(stage: &Stage, split: &Split, b: &[f64], reflected: &[f64]) -> FirstBounce {
+    let vectors = PatchVectors::of(stage);
+    let (bands, weights) = (vectors.bands, &stage.photometry.weights);
+    let mut sources: BTreeMap<u32, [Vec<(usize, f64)>; 4]> = BTreeMap::new();
+    let mut receivers = vec![[0.0; 3]; split.len()];
+    let mut std_err = vec![[0.0; 3]; split.len()];
+    for i in 0..split.len() {
+        let rho = &vectors.reflectance[i * bands..(i + 1) * bands];
+        let mut row: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+        for (j, pair) in split.row(i) {
+            // Luminance that one unit of form factor brings.
+            let light = &b[j * bands..(j + 1) * bands];
+            let unit: f64 = weights.iter().zip(rho).zip(light).map(|((w, r), l)| w * r * l).sum();
+            let own = row.entry(stage.patches[j].surface).or_default();
+            for (k, cause) in Cause::ALL.into_iter().enumerate() {
+                let part = unit * pair.part(cause);
+                own[k] += part;
+                receivers[i][k] += part;
+                std_err[i][k] += (unit * pair.std_err(cause)).powi(2);
+            }
+        }
+        std_err[i].iter_mut().for_each(|e| *e = e.sqrt());
+        for (surface, parts) in row {
+            let own = sources.entry(surface).or_default();
+            (0..3).for_each(|k| own[k].push((i, parts[k])));
+            own[3].push((i, parts.iter().sum()));
+        }
+    }
+    let norm = |list: &[(usize, f64)]| compensated_sum(list.iter().map(|(i, y)| stage.patches[*i].area * y * y)).sqrt();
+    let all = norm(&reflected.iter().copied().enumerate().collect::<Vec<_>>());
+    let source = |(surface, own): (&u32, &[Vec<(usize, f64)>; 4])| {
+        let patches = patches_of(stage, *surface);
+        let share = |k: usize| if all > 0.0 { norm(&own[k]) / all } else { 0.0 };
+        Source {
+            name: stage.surfaces[*surface as usize].name.clone(),
+            luminance: mean_luminance(stage, &patches, b),
+            patches,
+            error: share(3),
+            by_cause: [share(0), share(1), share(2)],
+        }
+    };
+    let mut sources: Vec<Source> = sources.iter().map(source).collect();
+    sources.sort_by(|a, b| b.error.total_cmp(&a.error));
+    FirstBounce { receivers, std_err, sources }
+}
+
+fn patches_of(stage: &Stage, surface: u32) -> Vec<u32> {
+    (0..stage.patch_count() as u32)
+        .filter(|i| stage.patches[*i as usize].surface == surface && stage.patches[*i as usize].is_present())
+        .collect()
+}
+
+fn mean_luminance(stage: &Stage, patches: &[u32], b: &[f64]) -> f64 {
+    let bands = stage.band_count();
+    let light = |j: &u32| {
+        let j = *j as usize;
+        stage.patches[j].area * stage.photometry.luminance(&b[j * bands..(j + 1) * bands])
+    };
+    let area: f64 = patches.iter().map(|j| stage.patches[*j as usize].area).sum();
+    if area > 0.0 { patches.iter().map(light).sum::<f64>() / area } else { 0.0 }
+}
