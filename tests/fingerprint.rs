@@ -53,14 +53,14 @@ fn told(name: &str, n: u32, rule: Rule, mistake: Mistake, share: f64) -> Fingerp
 #[test]
 fn four_resolutions_of_the_1985_table() {
     for n in [32, 50, 100, 128] {
-        told(&format!("{n}-midpoint-none-world.npz"), n, Rule::Midpoint, Mistake::None, 0.9);
+        told(&format!("{n}-midpoint-none-world.npz"), n, Rule::Midpoint, Mistake::None, 0.8);
     }
 }
 
 #[test]
 fn the_other_two_rules() {
-    told("64-exact-none-world.npz", 64, Rule::Exact, Mistake::None, 0.9);
-    told("80-normalised-none-world.npz", 80, Rule::Normalised, Mistake::None, 0.9);
+    told("64-exact-none-world.npz", 64, Rule::Exact, Mistake::None, 0.8);
+    told("80-normalised-none-world.npz", 80, Rule::Normalised, Mistake::None, 0.8);
 }
 
 #[test]
@@ -74,11 +74,11 @@ fn planted_mistakes() {
         (40, Rule::Midpoint, Mistake::ExponentOne, "40-midpoint-exponent-one-world.npz"),
         (50, Rule::Midpoint, Mistake::SidesUpsideDown, "50-midpoint-sides-upside-down-world.npz"),
     ] {
-        told(name, n, rule, mistake, 0.7);
+        told(name, n, rule, mistake, 0.6);
     }
     // The corner that a pixel's delta is taken at depends on which way the axes run: the sum tells, entries may not.
     told("32-midpoint-pixel-corner-world.npz", 32, Rule::Midpoint, Mistake::PixelCorner, 0.0);
-    told("32-midpoint-top-table-on-sides-world.npz", 32, Rule::Midpoint, Mistake::TopTableOnSides, 0.7);
+    told("32-midpoint-top-table-on-sides-world.npz", 32, Rule::Midpoint, Mistake::TopTableOnSides, 0.6);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn noise_is_no_hemicube() {
     for f in [noisy, closed] {
         let print = fingerprint(&room(), &f);
         println!("{print}\n{:#?}", print.reasons);
-        assert_eq!(print.likeness, Likeness::NoHemicube);
+        assert_eq!(print.likeness, Likeness::NoSignOfHemicube);
         assert_eq!((print.resolution, print.rule, print.mistake), (None, None, None));
     }
 }
@@ -142,7 +142,7 @@ fn what_cannot_be_told_is_not_told() {
     // A table that sums to 1 and a turn nobody knows: small entries alone could tell.
     let print = fingerprint(&room(), &third_party("48-exact-none-random.npz"));
     println!("{print}\n{:#?}", print.reasons);
-    assert!(print.resolution.is_none_or(|n| n == 48));
+    assert_eq!((print.likeness, print.resolution), (Likeness::NoSignOfHemicube, None));
     // Three decimal places.
     let f = changed(&third_party("50-midpoint-none-world.npz"), |v| (v * 1e3).round() / 1e3);
     let print = fingerprint(&room(), &f);

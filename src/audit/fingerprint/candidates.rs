@@ -8,16 +8,18 @@ use super::{Candidate, Fingerprint, Likeness, words};
 use crate::methods::hemicube::World;
 use crate::scene::Stage;
 use crate::solution::FormFactors;
+use rayon::prelude::*;
 
 /// Rows that tell how the hemi-cubes are turned, and rows on which that is confirmed.
 const TRIAL_ROWS: usize = 2;
 const CONFIRMED_ROWS: usize = 24;
 /// Resolutions tried by drawing where no clue names one.
-const LAST_DRAWN: u32 = 512;
+const LAST_DRAWN: u32 = 256;
 /// The same for tables with mistakes.
-const LAST_DRAWN_WRONG: u32 = 128;
-/// Larger resolutions worth a try by their small entries.
-const LARGE: [u32; 12] = [600, 640, 700, 720, 768, 800, 900, 960, 1000, 1024, 1280, 2048];
+const LAST_DRAWN_WRONG: u32 = 64;
+/// Resolutions tried by their small entries: all even ones up to the first, then some that people use.
+const LAST_SCANNED: u32 = 512;
+const LARGE: [u32; 8] = [600, 640, 720, 768, 800, 1000, 1024, 2048];
 
 impl Candidate {
     fn new(model: Model, resolutions: [u32; 2], by_row_sum: bool) -> Self {
@@ -115,25 +117,22 @@ impl<'a> Search<'a> {
         let mut entries = self.entries.clone();
         entries.dedup_by(|b, a| (*b - *a) <= 1e-11 * *a);
         entries.truncate(64);
-        let sums = !self.row_sums_are_silent();
-        let mut out = Vec::new();
-        for n in (4..=LAST_DRAWN).step_by(2).chain(LARGE) {
-            for model in models {
-                let lattice = Lattice::of(&entries, &Table::new(n, *model).deltas(), self.digits);
-                if lattice.holds() {
-                    let mut candidate = Candidate::new(*model, [n, n], sums);
-                    candidate.lattice = Some(lattice);
-                    out.push(candidate);
-                }
-            }
-        }
+        let by_row_sum = self.row_sums.common.is_some();
+        let judge = |n: u32| -> Vec<Candidate> {
+            let lattice = |m: &Model| (*m, Lattice::of(&entries, &Table::new(n, *m).deltas(), self.digits));
+            let held = models.iter().map(lattice).filter(|(_, lattice)| lattice.holds());
+            held.map(|(model, lattice)| Candidate {
+                lattice: Some(lattice),
+                ..Candidate::new(model, [n, n], by_row_sum)
+            })
+            .collect()
+        };
+        let scanned: Vec<u32> =
+            (4..=LAST_SCANNED).step_by(2).chain(LARGE).filter(|n| could_be_pixels(&entries, *n)).collect();
+        let mut out: Vec<Candidate> = scanned.par_iter().flat_map_iter(|n| judge(*n)).collect();
         let most = out.iter().filter_map(|c| c.lattice).map(|l| l.single + l.double).max().unwrap_or(0);
         out.retain(|c| c.lattice.is_some_and(|l| 2 * (l.single + l.double) > most));
         out
-    }
-
-    fn row_sums_are_silent(&self) -> bool {
-        self.row_sums.common.is_none()
     }
 
     /// No clue names a resolution: draws all of them on one row.
@@ -160,8 +159,8 @@ impl<'a> Search<'a> {
     fn drawn_up_to(&self, last: u32, models: &[Model]) -> Vec<Candidate> {
         let Some(row) = self.rows.first() else { return Vec::new() };
         let axes = Axes::different(&self.stage.patches[*row]);
-        let mut out = Vec::new();
-        for n in (4..=last).step_by(2) {
+        let by_row_sum = self.row_sums.common.is_some();
+        let at = |n: u32| -> Vec<Candidate> {
             let camera = Camera::new(self.stage, &self.world, n);
             let tables: Vec<Table> = models.iter().map(|m| Table::new(n, *m)).collect();
             let tables: Vec<&Table> = tables.iter().collect();
@@ -173,9 +172,10 @@ impl<'a> Search<'a> {
                 }
             }
             let fits = models.iter().zip(best).filter(|(_, entries)| *entries >= 4);
-            out.extend(fits.map(|(m, _)| Candidate::new(*m, [n, n], !self.row_sums_are_silent())));
-        }
-        out
+            fits.map(|(m, _)| Candidate::new(*m, [n, n], by_row_sum)).collect()
+        };
+        let tried: Vec<u32> = (4..=last).step_by(2).collect();
+        tried.par_iter().flat_map_iter(|n| at(*n)).collect()
     }
 
     /// How far an entry reproduced may be off.
@@ -249,11 +249,8 @@ impl<'a> Search<'a> {
     pub fn conclude(&self, likeness: Likeness, candidates: Vec<Candidate>) -> Fingerprint {
         let told = likeness == Likeness::Hemicube;
         let best = candidates.first().filter(|_| told);
-        let rivals: Vec<&Candidate> =
-            candidates.iter().filter(|c| best.is_some_and(|b| c.is_as_good_as(b))).collect();
-        let agreed = |same: &dyn Fn(&Candidate, &Candidate) -> bool| {
-            best.filter(|b| rivals.iter().all(|c| same(b, c)))
-        };
+        let rivals: Vec<&Candidate> = candidates.iter().filter(|c| best.is_some_and(|b| c.is_as_good_as(b))).collect();
+        let agreed = |same: &dyn Fn(&Candidate, &Candidate) -> bool| best.filter(|b| rivals.iter().all(|c| same(b, c)));
         let mut out = Fingerprint {
             likeness,
             resolution: agreed(&|a, b| a.resolutions == b.resolutions).and_then(Candidate::resolution),
@@ -288,7 +285,16 @@ fn spread_rows(stage: &Stage, f: &FormFactors) -> Vec<usize> {
     let all: Vec<usize> = (0..f.n).filter(|i| stage.patches[*i].is_present() && length(*i) > 0).collect();
     let Some(longest) = all.iter().copied().rev().max_by_key(|i| length(*i)) else { return Vec::new() };
     let wanted = CONFIRMED_ROWS.min(all.len());
-    let mut rows: Vec<usize> = (0..wanted).rev().map(|k| all[k * all.len() / wanted]).filter(|i| *i != longest).collect();
+    let mut rows: Vec<usize> =
+        (0..wanted).rev().map(|k| all[k * all.len() / wanted]).filter(|i| *i != longest).collect();
     rows.insert(0, longest);
     rows
+}
+
+/// True if the smallest entries can be one pixel or two at a resolution, by the sizes of its pixels.
+fn could_be_pixels(entries: &[f64], n: u32) -> bool {
+    use std::f64::consts::PI;
+    let h = 2.0 / f64::from(n);
+    let (smallest, largest) = (0.9 * h.powi(3) / (8.0 * PI), 1.05 * h * h / PI);
+    entries.len() >= 2 && entries[0] >= smallest && entries[1] <= 2.0 * largest
 }

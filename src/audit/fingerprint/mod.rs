@@ -31,8 +31,9 @@ pub enum Likeness {
         /// The smallest number of rays that fits.
         rays: u64,
     },
-    /// Nothing in it says hemi-cube.
-    NoHemicube,
+    /// Nothing in it says hemi-cube; a hemi-cube turned in an unknown way, of a table that sums to 1, may say nothing
+    /// either.
+    NoSignOfHemicube,
     /// Too few rows or digits to say.
     CannotBeTold,
 }
@@ -84,7 +85,7 @@ pub struct Fingerprint {
 /// Tells what can be told of a matrix of this scene.
 ///
 /// Draws up to 24 hemi-cubes per candidate; where neither row sums nor small entries say a resolution, those up to
-/// 512 are tried on two rows.
+/// 256 are drawn for one row.
 pub fn fingerprint(stage: &Stage, matrix: &FormFactors) -> Fingerprint {
     let search = Search::new(stage, matrix);
     let rays = clues::rays(&search.entries, search.digits);
@@ -101,7 +102,7 @@ pub fn fingerprint(stage: &Stage, matrix: &FormFactors) -> Fingerprint {
         Some(best) if best.is_sure(&search.row_sums) => Likeness::Hemicube,
         Some(_) if search.is_coarse() => Likeness::CannotBeTold,
         None if decimal => Likeness::CannotBeTold,
-        _ => Likeness::NoHemicube,
+        _ => Likeness::NoSignOfHemicube,
     };
     search.conclude(likeness, candidates)
 }

@@ -53,7 +53,7 @@ impl fmt::Display for Fingerprint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.likeness {
             Likeness::RayCounts { rays } => write!(f, "no hemi-cube: all entries are counts of {rays} rays"),
-            Likeness::NoHemicube => f.write_str("no hemi-cube that could be told: no clue of pixels"),
+            Likeness::NoSignOfHemicube => f.write_str("no sign of a hemi-cube"),
             Likeness::CannotBeTold => f.write_str("cannot be told"),
             Likeness::Hemicube => {
                 let untold = || "cannot be told".to_string();
@@ -90,10 +90,14 @@ fn row_sums(print: &Fingerprint) -> String {
     };
     let shared = format!("{} of {} rows sum to {common:.12} (+-{:.0e})", sums.sharing, sums.rows, sums.slack);
     match print.candidates.iter().find(|c| c.by_row_sum) {
+        None if (common - 1.0).abs() <= sums.slack + 1e-11 => {
+            format!("{shared}, as form factors of a closed scene do, however made.")
+        }
         None => format!("{shared}, which no table known here sums to."),
-        Some(c) if c.model.is_constant() => {
+        Some(c) if c.model.is_constant() && c.model.mistake == Mistake::None => {
             format!("{shared}, as exact or normalised tables do, and closed form factors and ray counts too.")
         }
+        Some(c) if c.model.is_constant() => format!("{shared}, the sum of exact deltas where {}.", c.model.mistake),
         Some(c) => {
             let [low, high] = c.resolutions;
             let which = if low == high { format!("N = {low}") } else { format!("N = {low} to {high}") };
@@ -150,7 +154,7 @@ fn unsettled(print: &Fingerprint) -> Option<String> {
              digits.",
             print.digits
         )),
-        Likeness::NoHemicube if print.row_sums.common.is_some() => Some(
+        Likeness::NoSignOfHemicube if print.row_sums.common.is_some() => Some(
             "A hemi-cube whose table sums to 1, turned in a way not tried here and without small entries, would look \
              the same."
                 .to_string(),
