@@ -5,6 +5,7 @@ mod beats;
 mod causes;
 mod cures;
 mod effect;
+pub mod fingerprint;
 mod rank;
 mod seen;
 
@@ -12,5 +13,6 @@ pub use beats::Beat;
 pub use causes::{Cause, Pair, Split, Truth};
 pub use cures::{Cure, Cured, POINTS, cured, resolution_by_pixels, spatial_errors, subdivision_distance};
 pub use effect::Effect;
+pub use fingerprint::{Fingerprint, fingerprint};
 pub use rank::{FirstBounce, Source, first_bounce};
 pub use seen::{Seen, View, seen, views};

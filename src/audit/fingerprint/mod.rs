@@ -1,0 +1,108 @@
+//! The fingerprint of a form-factor matrix made elsewhere: a hemi-cube, of which resolution, table and mistake?
+//!
+//! What does not depend on how the hemi-cubes are turned leads: the sum that the rows of a closed scene share,
+//! and small entries that are one delta of a table or two. What they suggest is then drawn with our own hemi-cube,
+//! turned in the ways people turn theirs, and held against rows entry by entry.
+
+mod candidates;
+mod clues;
+mod lattice;
+mod pictures;
+mod tables;
+mod words;
+
+use crate::scene::Stage;
+use crate::solution::FormFactors;
+use candidates::Search;
+pub use clues::{Digits, RowSums};
+pub use lattice::Lattice;
+pub use pictures::{Axes, Axis, Confirmed};
+use serde::Serialize;
+pub use tables::{Mistake, Model, Rule};
+
+/// What a matrix looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Likeness {
+    /// A hemi-cube, beyond accident.
+    Hemicube,
+    /// Counts of rays: every entry is a multiple of 1 / `rays`.
+    RayCounts {
+        /// The smallest number of rays that fits.
+        rays: u64,
+    },
+    /// Nothing in it says hemi-cube; a hemi-cube turned in an unknown way, of a table that sums to 1, may say nothing
+    /// either.
+    NoSignOfHemicube,
+    /// Too few rows or digits to say.
+    CannotBeTold,
+}
+
+/// A hemi-cube that fits a clue.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Candidate {
+    /// How its table is made.
+    pub model: Model,
+    /// Resolutions that fit: the lowest and the highest.
+    pub resolutions: [u32; 2],
+    /// True if its total is the sum that the rows share.
+    pub by_row_sum: bool,
+    /// Small entries against its table, where it has one resolution.
+    pub lattice: Option<Lattice>,
+    /// Entries reproduced by our pixels, best turn.
+    pub confirmed: Option<Confirmed>,
+    /// That turn.
+    pub axes: Option<Axes>,
+}
+
+/// What can be told of a matrix.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fingerprint {
+    /// What it looks like.
+    pub likeness: Likeness,
+    /// Pixels along an edge of the top face; `None` where it cannot be told.
+    pub resolution: Option<u32>,
+    /// How deltas are found; `None` where it cannot be told.
+    pub rule: Option<Rule>,
+    /// What is wrong, [`Mistake::None`] for nothing; `None` where it cannot be told.
+    pub mistake: Option<Mistake>,
+    /// How the hemi-cubes are turned; `None` where no turn reproduces the entries.
+    pub axes: Option<Axes>,
+    /// Entries reproduced; `None` where nothing was drawn.
+    pub confirmed: Option<Confirmed>,
+    /// What rows sum to.
+    pub row_sums: RowSums,
+    /// The smallest entry above zero; `None` for an empty matrix.
+    pub smallest_entry: Option<f64>,
+    /// Digits of the entries.
+    pub digits: Digits,
+    /// All that fits, best first.
+    pub candidates: Vec<Candidate>,
+    /// The reasons in words, most telling first.
+    pub reasons: Vec<String>,
+}
+
+/// Tells what can be told of a matrix of this scene.
+///
+/// Draws up to 24 hemi-cubes per candidate; where neither row sums nor small entries say a resolution, those up to
+/// 256 are drawn for one row.
+pub fn fingerprint(stage: &Stage, matrix: &FormFactors) -> Fingerprint {
+    let search = Search::new(stage, matrix);
+    let rays = clues::rays(&search.entries, search.digits);
+    // Decimal places and counts of a power of ten are the same numbers.
+    let decimal = matches!(search.digits, Digits::Places(_));
+    if let Some(rays) = rays.filter(|_| !decimal) {
+        return search.conclude(Likeness::RayCounts { rays }, Vec::new());
+    }
+    if search.row_sums.rows < 3 || search.entries.len() < 8 {
+        return search.conclude(Likeness::CannotBeTold, Vec::new());
+    }
+    let candidates = search.run();
+    let likeness = match candidates.first() {
+        Some(best) if best.is_sure(&search.row_sums) => Likeness::Hemicube,
+        Some(_) if search.is_coarse() => Likeness::CannotBeTold,
+        None if decimal => Likeness::CannotBeTold,
+        _ => Likeness::NoSignOfHemicube,
+    };
+    search.conclude(likeness, candidates)
+}
