@@ -23,6 +23,8 @@ const HUES: [[u8; 3]; 7] = [
 
 /// Below this many pixels per cell, marks are a tint of the whole cell and patches are not outlined.
 const LEAST_MARK: f64 = 4.0;
+/// From this many pixels per cell on, cells are parted by hairlines.
+const LEAST_GRID: f64 = 14.0;
 /// A pixel that is wrong by less is not marked: the finer hemi-cube knows no better.
 const LEAST_WRONG: f32 = 0.02;
 
@@ -62,7 +64,9 @@ impl Window {
         if self.scale < LEAST_MARK {
             return Some(tinted(shown, wrong));
         }
-        Some(marked(shown, wrong, place.map(f64::fract)))
+        let rgb = marked(shown, wrong, place.map(f64::fract));
+        let on_grid = self.scale >= LEAST_GRID && place.iter().any(|p| p.fract() * self.scale < 1.0);
+        Some(if on_grid { mix(rgb, MIXED, 0.22) } else { rgb })
     }
 
     /// Mean colour of the cells in a pixel.
