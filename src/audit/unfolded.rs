@@ -203,6 +203,20 @@ mod tests {
         assert!((1..5).all(|face| of(face).count() == 0));
     }
 
+    /// The lamp of the Cornell box is 3 x 2 patches; one corner of the floor sees it whole, a place behind a block not at all.
+    #[test]
+    fn silhouettes_go_around_a_source_of_many_patches_where_it_is_seen() {
+        let stage = builtin("cornell-box").expect("a scene").at(0).expect("a state");
+        let lamp = (0..stage.patch_count()).filter(|i| stage.surface_name(*i) == "light").map(|i| i as u32).collect();
+        for (patch, edges) in [(1, 10), (120, 0)] {
+            let u = unfold(&stage, patch, &"resolution=50".parse().expect("settings"), &lamp);
+            let u = u.expect("a hemi-cube").expect("a patch");
+            let all = u.picture.faces.iter().flat_map(|f| &f.silhouettes);
+            assert_eq!(all.filter(|s| s.outline == Outline::Source).count(), edges, "patch {patch}");
+            assert_eq!(u.covered_pixels > 0.0, edges > 0);
+        }
+    }
+
     /// In a cube the ceiling's edges lie on edges of pixels, and so do the walls' but for the upright ones, which run
     /// along the diagonals of the top.
     #[test]
