@@ -461,7 +461,7 @@ fn the_cornell_box_has_its_measures() {
 
 #[test]
 fn closed_built_in_scenes_are_closed() {
-    let rooms = ["furnished-room", "dynamic-cube", "cube-room", "cube-room-edits", "robot-room"];
+    let rooms = ["furnished-room", "dynamic-cube", "cube-room", "cube-room-edits", "robot-room", "office"];
     for name in ["furnace", "furnace-l", "l-room", "cube-one-emitter"].into_iter().chain(rooms) {
         let scene = builtin(name).unwrap();
         assert_eq!(scene.enclosure, Some(true), "{name}");
@@ -472,7 +472,7 @@ fn closed_built_in_scenes_are_closed() {
             check_consistent(&stage);
         }
     }
-    assert_eq!(builtin_names().len(), 21);
+    assert_eq!(builtin_names().len(), 26);
     assert!((1000..=1500).contains(&builtin("furnished-room").unwrap().at(0).unwrap().patch_count()));
 }
 

@@ -205,6 +205,20 @@ impl Split {
     }
 }
 
+/// A matrix of rows at shooters as progressive refinement uses it, see [`Split::from_shooters`].
+pub fn from_shooters(stage: &Stage, f: &FormFactors) -> FormFactors {
+    let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); f.n];
+    for shooter in 0..f.n {
+        for (receiver, value) in f.row(shooter) {
+            let area = stage.patches[receiver].area;
+            if area > 0.0 {
+                rows[receiver].push((shooter as u32, value * stage.patches[shooter].area / area));
+            }
+        }
+    }
+    FormFactors::from_exact_rows(rows)
+}
+
 /// The union of three rows, by column.
 fn merged(i: usize, seen: &[Sight], cube: &FormFactors, truth: Truth) -> Vec<(u32, Pair)> {
     let span = |f: &FormFactors| f.row_starts[i]..f.row_starts[i + 1];

@@ -1,6 +1,5 @@
 //! What would mend a hemi-cube: form factors of the mended method, to be solved and judged like any other.
 
-use super::causes::Split;
 use super::seen::View;
 use crate::estimate::PointSight;
 use crate::math::{Bounds, DVec3};
@@ -198,14 +197,4 @@ pub fn resolution_by_pixels(views: &[View], resolution: u32, limit: f64) -> Opti
     let factor = (wanted / smallest).sqrt().max(1.0);
     let resolution = (f64::from(resolution) * factor / 2.0).ceil() * 2.0;
     resolution.is_finite().then_some(resolution.min(1e9) as u32)
-}
-
-/// Proximity and visibility together at each receiver, luminance.
-pub fn spatial_errors(split: &Split, unit: &(dyn Fn(usize, usize) -> f64 + Sync)) -> Vec<f64> {
-    use super::causes::Cause;
-    let of = |i: usize| {
-        let part = |(j, p): (usize, &super::Pair)| unit(i, j) * (p.part(Cause::Proximity) + p.part(Cause::Visibility));
-        split.row(i).map(part).sum()
-    };
-    (0..split.len()).into_par_iter().map(of).collect()
 }

@@ -51,6 +51,15 @@ impl Effect {
     }
 }
 
+/// Radiosities with a matrix, n x bands, W/m^2.
+///
+/// # Errors
+/// A system that has no solution.
+pub fn radiosity(stage: &Stage, f: &FormFactors) -> Result<Vec<f64>, SolverError> {
+    let vectors = PatchVectors::of(stage);
+    solved(&vectors.emission, &vectors, f, None)
+}
+
 fn solved(
     source: &[f64],
     vectors: &PatchVectors,

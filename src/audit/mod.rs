@@ -8,11 +8,13 @@ mod effect;
 pub mod fingerprint;
 mod rank;
 mod seen;
+mod unfolded;
 
 pub use beats::Beat;
-pub use causes::{Cause, Pair, Split, Truth};
-pub use cures::{Cure, Cured, POINTS, cured, resolution_by_pixels, spatial_errors, subdivision_distance};
-pub use effect::Effect;
+pub use causes::{Cause, Pair, Split, Truth, from_shooters};
+pub use cures::{Cure, Cured, POINTS, cured, resolution_by_pixels, subdivision_distance};
+pub use effect::{Effect, radiosity};
 pub use fingerprint::{Fingerprint, fingerprint};
-pub use rank::{FirstBounce, Source, first_bounce};
+pub use rank::{FirstBounce, Source, first_bounce, source_error};
 pub use seen::{Seen, View, seen, views};
+pub use unfolded::{Unfolded, unfold};

@@ -4,6 +4,7 @@ use super::causes::{Cause, Split};
 use crate::math::compensated_sum;
 use crate::methods::PatchVectors;
 use crate::scene::Stage;
+use crate::solution::FormFactors;
 use std::collections::BTreeMap;
 
 /// A surface as a source of error.
@@ -103,4 +104,24 @@ fn mean_luminance(stage: &Stage, patches: &[u32], b: &[f64]) -> f64 {
     };
     let area: f64 = patches.iter().map(|j| stage.patches[*j as usize].area).sum();
     if area > 0.0 { patches.iter().map(light).sum::<f64>() / area } else { 0.0 }
+}
+
+/// First-bounce error that the columns of some patches bring, as [`Source::error`]: of a matrix against the truth of
+/// `split`, or of one that is a difference already. `unit(i, j)`: luminance that a unit of form factor brings.
+pub fn source_error(
+    stage: &Stage,
+    f: &FormFactors,
+    split: Option<&Split>,
+    source: &[u32],
+    unit: &(dyn Fn(usize, usize) -> f64 + Sync),
+    reflected: &[f64],
+) -> f64 {
+    let error = |i: usize| -> f64 {
+        let of = |j: usize| f.get(i, j) - split.and_then(|s| s.get(i, j)).map_or(0.0, |p| p.mean);
+        source.iter().map(|j| unit(i, *j as usize) * of(*j as usize)).sum()
+    };
+    let norm =
+        |y: &dyn Fn(usize) -> f64| compensated_sum((0..f.n).map(|i| stage.patches[i].area * y(i).powi(2))).sqrt();
+    let all = norm(&|i| reflected[i]);
+    if all > 0.0 { norm(&error) / all } else { 0.0 }
 }

@@ -16,6 +16,7 @@ mod smooth;
 #[cfg(test)]
 pub(crate) mod testing;
 mod text;
+mod unfolded;
 mod vertices;
 mod visibility;
 mod weld;
@@ -30,5 +31,6 @@ pub use paint::{Raster, paint, paint_cells, paint_field, paint_smooth};
 pub use scale::{Scale, Tick, area_percentile};
 pub use sheet::{Bar, Sheet, side_by_side};
 pub use smooth::vertex_colours;
+pub use unfolded::{Outline, Shown, Silhouette, UnfoldedFace, UnfoldedHemicube, Wrong};
 pub use vertices::Stencils;
 pub use visibility::{SUPERSAMPLING, View, Visibility, views};

@@ -1,5 +1,6 @@
 //! Conducts whole runs: reference, solve, check, demo. Hands finished records to reports, which only format.
 
+pub mod audit;
 mod contributions;
 pub mod converge;
 mod judge;
