@@ -18,8 +18,8 @@ fn patch(stage: &Stage, surface: &str) -> usize {
 /// The form factor between two patches as a hemi-cube counts it.
 fn counted(stage: &Stage, settings: &str, from: usize, to: usize) -> f64 {
     let f = form_factors(stage, &settings.parse().expect("settings"), &|_| ()).expect("form factors");
-    let row = f.row_starts[from]..f.row_starts[from + 1];
-    row.clone().find(|k| f.columns[*k] as usize == to).map_or(0.0, |k| f.values[k])
+    let mut row = f.row_starts[from]..f.row_starts[from + 1];
+    row.find(|k| f.columns[*k] as usize == to).map_or(0.0, |k| f.values[k])
 }
 
 /// Mean over rectangle `a` of the form factor to rectangle `b` in a parallel plane `height` above, by midpoints,
