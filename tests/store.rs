@@ -178,7 +178,8 @@ fn killed_with_a_journal(here: &Path, arguments: &str) {
 
 #[cfg(unix)]
 fn dies_with_a_journal(here: &Path, arguments: &str) -> bool {
-    let mut child = Ended(etalon(here, arguments).stderr(Stdio::null()).stdout(Stdio::null()).spawn().expect("it runs"));
+    let mut child =
+        Ended(etalon(here, arguments).stderr(Stdio::null()).stdout(Stdio::null()).spawn().expect("it runs"));
     let journal = here.join("ref.part/journal");
     let begin = Instant::now();
     let (mut before, mut still) = (0, 0);

@@ -147,7 +147,10 @@ mod tests {
     #[test]
     fn what_is_written_is_read_back() {
         let p = Params::parse("resolution=50, delta=exact,tolerance = 0.5%").unwrap();
-        assert_eq!(p, Params { resolution: 50, delta: Delta::Exact, rotation: 0.0, tolerance: 0.005, ..Params::default() });
+        assert_eq!(
+            p,
+            Params { resolution: 50, delta: Delta::Exact, rotation: 0.0, tolerance: 0.005, ..Params::default() }
+        );
         assert_eq!(p.to_string(), "resolution=50,delta=exact,rotation=0,tolerance=0.005");
         let random = Params::parse("turn=3,jitter=18446744073709551615").unwrap();
         assert_eq!((random.turn, random.jitter), (Some(3), Some(u64::MAX)));
