@@ -1,7 +1,7 @@
 //! Delta form factors: what each pixel of the hemi-cube contributes.
 //!
 //! The cube has half-width 1 and its centre on the patch. At N pixels along the top's edge a pixel has edge
-//! h = 2 / N; N x N pixels lie on the top, N x N/2 on each side. By symmetry one eighth of the top and half of
+//! h = 2 / N; N x N pixels lie on the top, N x N/2 on each side. By symmetry one quarter of the top and half of
 //! one half-face are stored.
 
 use super::Delta;
@@ -95,8 +95,8 @@ fn gauss([a, b]: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeltaTable {
     half: usize,
-    /// Octant of the top: pixel (a, b) counted from the axes, b <= a, at `a (a + 1) / 2 + b`.
-    octant: Vec<f64>,
+    /// Quadrant of the top: column a, row b, both counted from the axes, at `a + b * half`.
+    quadrant: Vec<f64>,
     /// Half of a side: column a counted from the axis, row b from the horizon, at `a + b * half`.
     side: Vec<f64>,
 }
@@ -106,9 +106,14 @@ impl DeltaTable {
     pub fn new(resolution: u32, delta: Delta) -> Self {
         let half = resolution as usize / 2;
         let h = 1.0 / half as f64;
-        let octant = (0..half).flat_map(|a| (0..=a).map(move |b| Pixel::at(a, b, h).top(delta)));
+        let mut quadrant = vec![0.0; half * half];
+        for (a, b) in (0..half).flat_map(|a| (0..=a).map(move |b| (a, b))) {
+            let value = Pixel::at(a, b, h).top(delta);
+            // Two pixels that mirror each other are one value, bit for bit.
+            (quadrant[a + b * half], quadrant[b + a * half]) = (value, value);
+        }
         let side = (0..half).flat_map(|b| (0..half).map(move |a| Pixel::at(a, b, h).side(delta)));
-        Self { half, octant: octant.collect(), side: side.collect() }
+        Self { half, quadrant, side: side.collect() }
     }
 
     /// Pixels from an axis to the edge: half the resolution.
@@ -118,8 +123,7 @@ impl DeltaTable {
 
     /// Top pixel in column a, row b, both counted from the axes.
     pub fn top(&self, a: usize, b: usize) -> f64 {
-        let (m, n) = (a.max(b), a.min(b));
-        self.octant[m * (m + 1) / 2 + n]
+        self.quadrant[a + b * self.half]
     }
 
     /// Side pixel in column a counted from the axis, row b counted from the horizon.
@@ -128,15 +132,8 @@ impl DeltaTable {
     }
 
     /// One row of top pixels, from the axis outwards; `b` counts rows from the axis.
-    pub(super) fn top_row<'a>(&self, b: usize, out: &'a mut [f64]) -> &'a [f64] {
-        let start = b * (b + 1) / 2;
-        out[..=b].copy_from_slice(&self.octant[start..=start + b]);
-        let mut at = start + b;
-        for a in b + 1..self.half {
-            at += a;
-            out[a] = self.octant[at];
-        }
-        out
+    pub(super) fn top_row(&self, b: usize) -> &[f64] {
+        &self.quadrant[b * self.half..(b + 1) * self.half]
     }
 
     /// One row of side pixels, from the axis outwards; `b` counts rows from the horizon.
@@ -205,10 +202,8 @@ mod tests {
     #[test]
     fn rows_are_the_table_read_in_order() {
         let t = DeltaTable::new(20, Delta::Midpoint);
-        let mut row = vec![0.0; 10];
         for b in 0..10 {
-            t.top_row(b, &mut row);
-            assert!((0..10).all(|a| row[a] == t.top(a, b) && t.side_row(b)[a] == t.side(a, b)));
+            assert!((0..10).all(|a| t.top_row(b)[a] == t.top(a, b) && t.side_row(b)[a] == t.side(a, b)));
         }
     }
 }

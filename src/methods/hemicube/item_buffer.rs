@@ -58,8 +58,13 @@ impl ItemBuffer {
 
     /// World direction (of no particular length) through the point of a pixel where it is sampled.
     pub fn direction(&self, face: Face, column: usize, row: usize) -> DVec3 {
+        self.direction_at(face, column, row, self.shift)
+    }
+
+    /// The same through another point of the pixel.
+    pub(super) fn direction_at(&self, face: Face, column: usize, row: usize, shift: [f64; 2]) -> DVec3 {
         let at = |k: usize, shift: f64, start: f64| start + (k as f64 + 0.5 + shift) * 2.0 / self.resolution as f64;
-        let v = at(row, self.shift[1], if face == Face::Top { -1.0 } else { 0.0 });
-        self.frame.to_world(face.to_frame(DVec3::new(1.0, at(column, self.shift[0], -1.0), v)))
+        let v = at(row, shift[1], if face == Face::Top { -1.0 } else { 0.0 });
+        self.frame.to_world(face.to_frame(DVec3::new(1.0, at(column, shift[0], -1.0), v)))
     }
 }

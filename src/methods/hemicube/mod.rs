@@ -7,6 +7,7 @@
 //! What it leaves out is what the reference measures: one point stands for the patch (proximity, visibility), one
 //! point for the pixel (aliasing), and the table of 1985 sums to a little more than one.
 
+mod by_rays;
 mod delta;
 mod error;
 mod item_buffer;
@@ -18,13 +19,14 @@ mod solve;
 mod stand;
 mod world;
 
+pub use by_rays::{Disagreement, by_rays, compare, compare_closely};
 pub use delta::{DeltaTable, Pixel, delta_side, delta_top};
 pub use error::HemicubeError;
 pub use item_buffer::{ItemBuffer, item_buffer, item_buffer_at};
 pub use params::{Delta, Params};
 pub use project::{FACES, Face};
 pub use raster::Item;
-pub use row::{Hemicube, Lost};
+pub use row::{Counted, Hemicube, Lost};
 pub use solve::{element_form_factors, form_factors, rows_of, solve, solve_with};
 pub use stand::{Stand, divided, drawn, stand, stands};
 pub use world::{World, centre};

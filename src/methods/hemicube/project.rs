@@ -240,6 +240,11 @@ impl Projector {
 }
 
 impl Projection {
+    /// Points of one of its polygons.
+    pub fn points_of(&self, p: &Projected) -> &[[f64; 2]] {
+        &self.points[p.first as usize..p.last as usize]
+    }
+
     fn push(&mut self, polygon: &[DVec3], face: Face, grid: &PixelGrid, c: &Candidate) {
         let half = 0.5 * grid.resolution as f64;
         let [x, y] = grid.shift;

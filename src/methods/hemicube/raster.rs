@@ -5,6 +5,7 @@
 //! lose none. Depth is 1 / depth in f64, linear on the face.
 
 use super::project::{Projected, Projection};
+use std::ops::Range;
 
 /// Positions within this many pixels of a pixel centre are taken to be on it. Two surfaces compute the edge they
 /// share with different rounding (about 1e-13 pixels); a centre on that edge must not fall between them.
@@ -34,26 +35,37 @@ impl Item {
     }
 }
 
-/// Depth and items of one face.
+/// Pixels whose depths are held at once: a quarter of a megabyte, which stays in the processor's cache. A face with
+/// more is drawn in bands of rows.
+const BAND_PIXELS: usize = 1 << 15;
+
+/// Items of one face, and depths of the band of rows at hand.
 #[derive(Debug, Default)]
 pub(super) struct Raster {
     width: usize,
     height: usize,
+    /// Depths of the rows from `band_start` on.
     nearness: Vec<f64>,
+    band_start: usize,
     items: Vec<Item>,
     /// First and one-past-last column of the polygon at hand, per row.
     spans: Vec<[i32; 2]>,
+    /// Column numbers, which cost more to convert than to read.
+    columns: Vec<f64>,
+    /// Polygons that hold pixel centres, and their rows.
+    large: Vec<(u32, Range<i32>)>,
 }
 
 impl Raster {
     /// Starts a face with nothing on it.
     pub fn clear(&mut self, (width, height): (usize, usize)) {
         (self.width, self.height) = (width, height);
-        self.nearness.clear();
-        self.nearness.resize(width * height, 0.0);
         self.items.clear();
         self.items.resize(width * height, Item::NOTHING);
         self.spans.resize(height, [i32::MAX, i32::MIN]);
+        if self.columns.len() != width {
+            self.columns = (0..width).map(|k| k as f64).collect();
+        }
     }
 
     /// Items of a row.
@@ -66,14 +78,31 @@ impl Raster {
         &self.items
     }
 
-    /// Draws all polygons in order.
+    /// Draws all polygons in order, band by band.
     pub fn draw(&mut self, projection: &Projection) {
-        for p in &projection.polygons {
-            self.polygon(p, &projection.points[p.first as usize..p.last as usize]);
+        let mut large = std::mem::take(&mut self.large);
+        large.clear();
+        let numbered = (0..).zip(&projection.polygons);
+        large.extend(numbered.filter_map(|(k, p)| Some((k, self.rows_of(projection.points_of(p))?))));
+        let step = (BAND_PIXELS / self.width.max(1)).max(1);
+        for start in (0..self.height).step_by(step) {
+            let end = (start + step).min(self.height);
+            self.band_start = start;
+            self.nearness.clear();
+            self.nearness.resize((end - start) * self.width, 0.0);
+            for (k, rows) in &large {
+                let rows = rows.start.max(start as i32)..rows.end.min(end as i32);
+                if !rows.is_empty() {
+                    let p = &projection.polygons[*k as usize];
+                    self.polygon(p, projection.points_of(p), rows);
+                }
+            }
         }
+        self.large = large;
     }
 
-    fn polygon(&mut self, p: &Projected, points: &[[f64; 2]]) {
+    /// Rows of pixel centres between a polygon's ends; `None` if it misses all columns or rows of them.
+    fn rows_of(&self, points: &[[f64; 2]]) -> Option<Range<i32>> {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for q in points {
             for k in 0..2 {
@@ -83,25 +112,24 @@ impl Raster {
         }
         let rows = first_at_or_after(low[1]).max(0)..first_at_or_after(high[1]).min(self.height as i32);
         // Most polygons of a fine scene are smaller than a pixel and miss all centres.
-        if rows.is_empty() || first_at_or_after(low[0]) >= first_at_or_after(high[0]) {
-            return;
-        }
-        let rows = rows.start as usize..rows.end as usize;
-        self.spans[rows.clone()].fill([i32::MAX, i32::MIN]);
+        (!rows.is_empty() && first_at_or_after(low[0]) < first_at_or_after(high[0])).then_some(rows)
+    }
+
+    /// Draws the given rows of a polygon.
+    fn polygon(&mut self, p: &Projected, points: &[[f64; 2]], rows: Range<i32>) {
+        self.spans[rows.start as usize..rows.end as usize].fill([i32::MAX, i32::MIN]);
         let mut previous = points[points.len() - 1];
         for &next in points {
-            self.edge(previous, next);
+            self.edge(previous, next, &rows);
             previous = next;
         }
-        for row in rows {
-            self.fill(row, p);
-        }
+        rows.for_each(|row| self.fill(row as usize, p));
     }
 
     /// Notes where an edge crosses each row of pixel centres. A convex polygon crosses a row twice.
-    fn edge(&mut self, a: [f64; 2], b: [f64; 2]) {
+    fn edge(&mut self, a: [f64; 2], b: [f64; 2], rows: &Range<i32>) {
         let ([x0, y0], [x1, y1]) = if a[1] <= b[1] { (a, b) } else { (b, a) };
-        let rows = first_at_or_after(y0).max(0)..first_at_or_after(y1).min(self.height as i32);
+        let rows = first_at_or_after(y0).max(rows.start)..first_at_or_after(y1).min(rows.end);
         if rows.is_empty() {
             return;
         }
@@ -122,12 +150,13 @@ impl Raster {
         if left >= right {
             return;
         }
-        let start = p.nearness[0] + p.nearness[2] * row as f64;
-        let at = row * self.width;
-        let depths = &mut self.nearness[at + left..at + right];
+        let [base, slope, per_row] = p.nearness;
+        let start = base + per_row * row as f64;
+        let (at, deep) = (row * self.width, (row - self.band_start) * self.width);
+        let depths = &mut self.nearness[deep + left..deep + right];
         let items = &mut self.items[at + left..at + right];
-        for (k, (depth, item)) in depths.iter_mut().zip(items).enumerate() {
-            let nearness = start + p.nearness[1] * (left + k) as f64;
+        for ((depth, item), column) in depths.iter_mut().zip(items).zip(&self.columns[left..right]) {
+            let nearness = start + slope * column;
             // Written as selections, which the compiler can do several at a time.
             let nearer = nearness > *depth * (1.0 + COINCIDENT);
             *depth = if nearer { nearness } else { *depth };

@@ -16,6 +16,20 @@ pub struct Lost {
     pub nothing: f64,
 }
 
+/// Pixel rows summed side by side: an addition waits for the one before it in its row, not for those of others.
+const ABREAST: usize = 4;
+
+/// A row of form factors with the number of pixels behind each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Counted {
+    /// (patch, form factor, pixels that show it) by patch number.
+    pub row: Vec<(u32, f64, u32)>,
+    /// What is no patch.
+    pub lost: Lost,
+    /// Pixels that show no patch. With those of the patches, 3 N^2 in all.
+    pub lost_pixels: u32,
+}
+
 /// A hemi-cube with all the memory it needs, moved from patch to patch.
 ///
 /// [`Hemicube::row`] does it all; the steps it takes, [`Hemicube::aim`] once and then [`Hemicube::project`],
@@ -29,7 +43,7 @@ pub struct Hemicube<'a> {
     projection: Projection,
     raster: Raster,
     tally: Tally,
-    deltas: Vec<f64>,
+    runs: [Vec<(Item, f64)>; ABREAST],
 }
 
 impl<'a> Hemicube<'a> {
@@ -43,7 +57,7 @@ impl<'a> Hemicube<'a> {
             projection: Projection::default(),
             raster: Raster::default(),
             tally: Tally::new(world.patches),
-            deltas: vec![0.0; table.half()],
+            runs: Default::default(),
         }
     }
 
@@ -62,6 +76,24 @@ impl<'a> Hemicube<'a> {
             self.sum(face);
         }
         self.take()
+    }
+
+    /// The same with the number of pixels that show each patch.
+    pub fn row_with_counts(&mut self, stand: &Stand) -> Counted {
+        let mut pixels = vec![0; self.world.patches];
+        let mut lost_pixels = 0;
+        self.aim_at(stand);
+        for face in Face::ALL {
+            self.project(face);
+            self.scan(face);
+            self.sum(face);
+            for run in self.items().chunk_by(|a, b| a == b) {
+                let count = run[0].as_patch().map_or(&mut lost_pixels, |j| &mut pixels[j as usize]);
+                *count += run.len() as u32;
+            }
+        }
+        let (row, lost) = self.take();
+        Counted { row: row.into_iter().map(|(j, f)| (j, f, pixels[j as usize])).collect(), lost, lost_pixels }
     }
 
     /// Items of all pixels of a face, row by row, as last scanned.
@@ -95,29 +127,40 @@ impl<'a> Hemicube<'a> {
     /// Adds the delta form factors of what was drawn, pixel row by pixel row.
     pub fn sum(&mut self, face: Face) {
         let (_, height) = face.size(2 * self.table.half());
-        for row in 0..height {
-            self.sum_row(face, row);
-        }
+        let together = height - height % ABREAST;
+        (0..together).step_by(ABREAST).for_each(|row| self.sum_rows::<ABREAST>(face, row));
+        (together..height).for_each(|row| self.sum_rows::<1>(face, row));
     }
 
-    fn sum_row(&mut self, face: Face, row: usize) {
-        let half = self.table.half();
-        let outwards = match face {
+    /// Sums `K` rows from `first` on, column by column. What each row adds, and in which order, is as if it were
+    /// summed alone.
+    fn sum_rows<const K: usize>(&mut self, face: Face, first: usize) {
+        let (half, raster, runs) = (self.table.half(), &self.raster, &mut self.runs);
+        let rows: [&[Item]; K] = std::array::from_fn(|k| &raster.row(first + k)[..2 * half]);
+        let outwards: [&[f64]; K] = std::array::from_fn(|k| match (face, first + k) {
             // Rows and columns are mirrored about the axes.
-            Face::Top => self.table.top_row(if row < half { half - 1 - row } else { row - half }, &mut self.deltas),
-            Face::Side(_) => self.table.side_row(row),
-        };
-        let across = outwards.iter().rev().chain(outwards);
+            (Face::Top, row) => self.table.top_row(if row < half { half - 1 - row } else { row - half }),
+            (Face::Side(_), row) => self.table.side_row(row),
+        });
         // Neighbouring pixels mostly show the same patch: sum the run, then add it.
-        let (mut run, mut sum) = (Item::NOTHING, 0.0);
-        for (item, delta) in self.raster.row(row).iter().zip(across) {
-            if *item != run {
-                self.tally.add(run, sum);
-                (run, sum) = (*item, 0.0);
+        let (mut run, mut sum) = ([Item::NOTHING; K], [0.0; K]);
+        let mut step = |column: usize, from_axis: usize| {
+            for k in 0..K {
+                let item = rows[k][column];
+                if item != run[k] {
+                    runs[k].push((run[k], sum[k]));
+                    (run[k], sum[k]) = (item, 0.0);
+                }
+                sum[k] += outwards[k][from_axis];
             }
-            sum += delta;
+        };
+        (0..half).for_each(|a| step(a, half - 1 - a));
+        (0..half).for_each(|a| step(half + a, a));
+        for k in 0..K {
+            let tally = &mut self.tally;
+            self.runs[k].drain(..).for_each(|(item, amount)| tally.add(item, amount));
+            tally.add(run[k], sum[k]);
         }
-        self.tally.add(run, sum);
     }
 
     /// The finished row; the sums start again from zero.
