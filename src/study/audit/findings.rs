@@ -226,5 +226,5 @@ fn cost(c: &CureRun, record: &AuditRecord) -> String {
 
 fn fingerprint(record: &AuditRecord) -> Option<Finding> {
     let f = record.fingerprint.as_ref()?;
-    Some(Finding::new("fingerprint", f.words(), json!(f)))
+    Some(Finding::new("fingerprint", f.to_string(), json!(f)))
 }
