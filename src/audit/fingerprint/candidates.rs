@@ -42,7 +42,9 @@ impl Candidate {
     /// True if more than accident speaks for it: entries reproduced, small entries on its table, or a row sum that
     /// only one resolution has and that is not 1, which every closed matrix may have.
     pub(super) fn is_sure(&self, sums: &RowSums) -> bool {
-        let told = self.by_row_sum && !self.model.is_constant() && self.resolution().is_some() && sums.slack < 1e-7;
+        let distinct =
+            if self.model.is_constant() { self.model.mistake.leaves_out() } else { self.resolution().is_some() };
+        let told = self.by_row_sum && distinct && sums.slack < 1e-7;
         self.is_drawn() || self.is_on_lattice() || told
     }
 
@@ -162,12 +164,17 @@ impl<'a> Search<'a> {
         let by_row_sum = self.row_sums.common.is_some();
         let at = |n: u32| -> Vec<Candidate> {
             let camera = Camera::new(self.stage, &self.world, n);
-            let tables: Vec<Table> = models.iter().map(|m| Table::new(n, *m)).collect();
+            // Which side is missing depends on where their axes point.
+            let mut tables: Vec<Table> = models.iter().map(|m| Table::new(n, *m)).collect();
+            for k in 0..3 * models.len() {
+                tables.push(tables[k].clone().turned());
+            }
             let tables: Vec<&Table> = tables.iter().collect();
             let mut best = vec![0; models.len()];
             for axes in &axes {
                 let confirmed = camera.compare(self.f, &[*row], *axes, &tables, &|v| self.slack(v));
-                for (best, c) in best.iter_mut().zip(confirmed) {
+                for (k, c) in confirmed.iter().enumerate() {
+                    let best = &mut best[k % models.len()];
                     *best = (*best).max(if c.share() >= 0.4 { c.entries } else { 0 });
                 }
             }

@@ -94,13 +94,13 @@ pub fn fingerprint(stage: &Stage, matrix: &FormFactors) -> Fingerprint {
     if let Some(rays) = rays.filter(|_| !decimal) {
         return search.conclude(Likeness::RayCounts { rays }, Vec::new());
     }
-    if search.row_sums.rows < 3 || search.entries.len() < 8 {
+    // Where rounding hides pixels, any good matrix is "reproduced".
+    if search.row_sums.rows < 3 || search.entries.len() < 8 || search.is_coarse() {
         return search.conclude(Likeness::CannotBeTold, Vec::new());
     }
     let candidates = search.run();
     let likeness = match candidates.first() {
         Some(best) if best.is_sure(&search.row_sums) => Likeness::Hemicube,
-        Some(_) if search.is_coarse() => Likeness::CannotBeTold,
         None if decimal => Likeness::CannotBeTold,
         _ => Likeness::NoSignOfHemicube,
     };
