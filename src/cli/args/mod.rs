@@ -1,5 +1,6 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
+mod audit;
 mod converge;
 mod form_factors;
 mod judge;
@@ -11,6 +12,7 @@ mod setup;
 mod solve;
 mod suites;
 
+pub use audit::{AuditArgs, AuditCommand, AuditForm};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
 pub use form_factors::{
     FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
@@ -94,6 +96,9 @@ pub enum Command {
     Check(CheckArgs),
     /// Convergence curves: error against shots, rays and seconds, of any methods and of series of snapshots.
     Converge(ConvergeCommand),
+    /// What a method is wrong about, why, and what would mend it.
+    #[command(subcommand)]
+    Audit(AuditCommand),
     /// Pictures of a solution or a reference, or of the patches alone.
     Render(RenderArgs),
     /// Write the HTML report of a finished run again.

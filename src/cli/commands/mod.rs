@@ -1,5 +1,7 @@
 //! One file per command: plan, run, print.
 
+mod audit;
+mod audit_tables;
 mod check;
 mod check_residual;
 mod converge;
@@ -25,7 +27,7 @@ mod split;
 mod told;
 mod validate;
 
-use super::args::{Cli, Command, ConvergeCommand, ConvergeOther, FormFactorsCommand, MatrixCommand};
+use super::args::{AuditCommand, Cli, Command, ConvergeCommand, ConvergeOther, FormFactorsCommand, MatrixCommand};
 use super::console::Console;
 use super::exit::Failure;
 
@@ -47,6 +49,7 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Check(args) => check::check(args, cli.global.kernel, console),
         Command::Converge(ConvergeCommand::Run(args)) => converge::run(args, cli.global.kernel, console),
         Command::Converge(ConvergeCommand::Other(ConvergeOther::Diff(args))) => converge_diff::run(args, console),
+        Command::Audit(AuditCommand::Hemicube(args)) => audit::run(args, kernel, console),
         Command::Render(args) => render::run(args, kernel, console),
         Command::Report { directory } => report::run(directory, cli.global.kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),

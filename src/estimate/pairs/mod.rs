@@ -150,7 +150,8 @@ pub fn pair_form_factors(stage: &Stage, plan: &PairPlan, progress: &(dyn Fn(u64)
             None => tally.points + GROWTH * points > plan.points,
         };
         let late = plan.max_time.is_some_and(|limit| begin.elapsed() * 3 > limit);
-        if tally.partial == 0 || points == 0 || enough || late || tolerance <= LAST {
+        // Not where a wave found nothing to do: small exchanges wait for a smaller tolerance.
+        if tally.partial == 0 || enough || late || tolerance <= LAST {
             break;
         }
         tolerance *= STEP;
