@@ -7,13 +7,13 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// A wave has to hold this share of the variance along its direction to be called one.
-const LEAST_SHARE: f64 = 0.25;
+const LEAST_SHARE: f64 = 0.5;
 
 /// Ratios that vary less than this are steady.
-const LEAST_SPREAD: f64 = 0.02;
+const LEAST_SPREAD: f64 = 0.05;
 
 /// Rows of patches shorter than this show no wave.
-const SHORTEST: usize = 6;
+const SHORTEST: usize = 8;
 
 /// A wave of the ratio of hemi-cube to exact value across a surface.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -73,8 +73,9 @@ fn strongest(stage: &Stage, axis: u8, rows: &[Vec<(u32, u32, f64)>]) -> Option<B
         };
         long.iter().zip(&means).map(of).sum()
     };
+    // At least two waves in the longest row: less is a trend.
     let steps = 2 * longest;
-    let frequencies = (2..=steps).map(|k| 0.5 * k as f64 / steps as f64);
+    let frequencies = (8..=steps).map(|k| 0.5 * k as f64 / steps as f64);
     let best = frequencies.map(|f| (f, power(f) / total)).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let (first, second) = (long[0][0], long[0][1]);
     let centre = |j: u32| {

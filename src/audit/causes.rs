@@ -34,6 +34,12 @@ impl Cause {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Aliasing, Self::Proximity, Self::Visibility];
 
+    /// The one with the largest of some sizes, in the order of [`Cause::ALL`].
+    pub fn largest(sizes: &[f64; 3]) -> Self {
+        let largest = (0..3).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]));
+        Self::ALL[largest.unwrap_or(0)]
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

@@ -26,8 +26,7 @@ pub struct Source {
 impl Source {
     /// The cause with the largest share.
     pub fn main_cause(&self) -> Cause {
-        let largest = (0..3).max_by(|a, b| self.by_cause[*a].total_cmp(&self.by_cause[*b]));
-        Cause::ALL[largest.unwrap_or(0)]
+        Cause::largest(&self.by_cause)
     }
 }
 

@@ -2,7 +2,7 @@
 //! double, and the beats between the grid of pixels and the grid of patches.
 
 use super::beats::{Beat, beats};
-use super::causes::Split;
+use super::causes::{Cause, Split};
 use crate::math::{DVec3, Frame};
 use crate::methods::hemicube::{delta_side, delta_top};
 use crate::scene::Stage;
@@ -36,6 +36,8 @@ pub struct View {
     pub mean: f64,
     /// Standard error of it.
     pub mean_error: f64,
+    /// The cause that matters most here.
+    pub main_cause: Cause,
     /// Pixels that the source would cover at the receiver's resolution: exact value over the delta form factor of the
     /// pixel before its centre.
     pub pixels: f64,
@@ -85,12 +87,14 @@ pub fn views(
     for (i, stand) in stands.iter().enumerate() {
         let Some((eye, frame)) = stand else { continue };
         let (mut cube, mut point, mut mean, mut variance, mut light) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let mut parts = [0.0f64; 3];
         for (j, p) in source.iter().filter_map(|j| Some((*j as usize, split.get(i, *j as usize)?))) {
             cube += p.cube;
             point += p.point;
             mean += p.mean;
             variance += p.mean_error * p.mean_error;
             light += unit(i, j) * p.error();
+            Cause::ALL.iter().zip(&mut parts).for_each(|(c, part)| *part += unit(i, j) * p.part(*c));
         }
         if cube == 0.0 && point == 0.0 && mean == 0.0 {
             continue;
@@ -105,6 +109,7 @@ pub fn views(
             point,
             mean,
             mean_error: variance.sqrt(),
+            main_cause: Cause::largest(&parts.map(f64::abs)),
             pixels: pixels(point),
             counted: pixels(cube),
             luminance_error: light,

@@ -131,10 +131,14 @@ fn of_source(record: &AuditRecord, s: &SourceAudit) -> Finding {
     }
     if let Some(worst) = seen.worst.first() {
         text += &format!(
-            "; the worst is patch {} on {}: form factor {:.3e} instead of {:.3e}",
-            worst.patch, worst.surface, worst.cube, worst.mean
+            "; the worst is patch {} on {}: form factor {:.3e} instead of {:.3e}, by {}",
+            worst.patch,
+            worst.surface,
+            worst.cube,
+            worst.mean,
+            worst.main_cause.name()
         );
-        if record.form == Form::Receiver {
+        if record.form == Form::Receiver && worst.main_cause == Cause::Aliasing {
             text += &format!(" ({} pixels instead of {})", pixels(worst.counted), pixels(worst.pixels));
         }
     }

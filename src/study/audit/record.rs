@@ -65,6 +65,8 @@ pub struct CureRun {
     pub pixels: u64,
     /// Points of exact visibility.
     pub points: usize,
+    /// Both, in pixels: what cures are sorted by, since seconds differ from run to run.
+    pub work: u64,
 }
 
 /// A hemi-cube at another setting.

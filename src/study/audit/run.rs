@@ -168,7 +168,7 @@ pub fn audit(session: &Session, request: &AuditRequest, progress: &dyn Progress)
     let resolutions = auditor.resolutions(&context)?;
     let rotations = auditor.rotations(&context)?;
     let mut cures = if request.cures { auditor.cures(&context, &sources)? } else { Vec::new() };
-    cures.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    cures.sort_by_key(|c| c.work);
     for (k, s) in sources.iter_mut().enumerate() {
         s.mended_by = request.limit.and_then(|limit| cures.iter().position(|c| c.by_source[k] <= limit));
     }
@@ -492,13 +492,16 @@ impl Auditor<'_> {
             (Some(limit), Some(rms)) => rms.high <= limit,
             _ => false,
         };
+        let infinite = self.bench.judge(&context.effect.point)?.0.rms.map_or(0.0, |e| e.low);
+        // Where no resolution will do, two steps show it.
+        let most_doublings = if self.request.limit.is_none_or(|limit| infinite > limit) { 2 } else { 5 };
         for doubling in 1..=5 {
             let resolution = self.request.params.resolution << doubling;
             if resolution > 4096 || present * 3 * u64::from(resolution).pow(2) > MOST_PIXELS {
                 break;
             }
             runs.push(run(Cure::Resolution { resolution })?);
-            if enough(&runs[runs.len() - 1].wrong) || (self.request.limit.is_none() && doubling == 2) {
+            if enough(&runs[runs.len() - 1].wrong) || doubling == most_doublings {
                 break;
             }
         }
@@ -532,7 +535,7 @@ impl Auditor<'_> {
         let (wrong, verdict) = self.judged(&made.form_factors, &words)?;
         let f = self.matrix_in_form(&made.form_factors);
         let by_source = sources.iter().map(|s| self.error_of(context, &s.source.patches, &f, false)).collect();
-        let (hemicubes, pixels, points) = (made.hemicubes, made.pixels, made.points);
-        Ok(CureRun { words, cure, wrong, verdict, by_source, seconds, hemicubes, pixels, points })
+        let (hemicubes, pixels, points, work) = (made.hemicubes, made.pixels, made.points, made.work());
+        Ok(CureRun { words, cure, wrong, verdict, by_source, seconds, hemicubes, pixels, points, work })
     }
 }
