@@ -184,6 +184,29 @@ impl Split {
         self.pairs.get(span.start + k)
     }
 
+    /// Distance of another matrix from the exact values at the centres: `sqrt(sum A_i^2 d^2 / sum A_i^2 F^2)`.
+    pub fn aliasing_of(&self, stage: &Stage, f: &FormFactors) -> f64 {
+        let row = |i: usize| {
+            let mut entries = f.row(i).peekable();
+            let (mut error, mut all) = (0.0, 0.0);
+            for (j, pair) in self.row(i) {
+                // Seen by the other one alone.
+                while let Some((_, value)) = entries.next_if(|e| e.0 < j) {
+                    error += value * value;
+                }
+                let value = entries.next_if(|e| e.0 == j).map_or(0.0, |e| e.1);
+                error += (value - pair.point).powi(2);
+                all += pair.mean * pair.mean;
+            }
+            error += entries.map(|e| e.1 * e.1).sum::<f64>();
+            let weight = stage.patches[i].area.powi(2);
+            [weight * error, weight * all]
+        };
+        let rows: Vec<[f64; 2]> = (0..self.len()).into_par_iter().map(row).collect();
+        let [error, all] = rows.iter().fold([0.0; 2], |s, r| [s[0] + r[0], s[1] + r[1]]);
+        if all > 0.0 { (error / all).sqrt() } else { 0.0 }
+    }
+
     /// A matrix on the same pairs.
     pub fn matrix(&self, of: impl Fn(&Pair) -> f64) -> FormFactors {
         FormFactors {

@@ -5,6 +5,7 @@ use crate::math::compensated_sum;
 use crate::methods::PatchVectors;
 use crate::scene::Stage;
 use crate::solution::FormFactors;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A surface as a source of error.
@@ -46,26 +47,31 @@ pub struct FirstBounce {
 pub fn first_bounce(stage: &Stage, split: &Split, b: &[f64], reflected: &[f64]) -> FirstBounce {
     let vectors = PatchVectors::of(stage);
     let (bands, weights) = (vectors.bands, &stage.photometry.weights);
-    let mut sources: BTreeMap<u32, [Vec<(usize, f64)>; 4]> = BTreeMap::new();
-    let mut receivers = vec![[0.0; 3]; split.len()];
-    let mut std_err = vec![[0.0; 3]; split.len()];
-    for i in 0..split.len() {
+    let row = |i: usize| {
         let rho = &vectors.reflectance[i * bands..(i + 1) * bands];
-        let mut row: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+        let (mut all, mut variance) = ([0.0; 3], [0.0; 3]);
+        let mut by_surface: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
         for (j, pair) in split.row(i) {
             // Luminance that one unit of form factor brings.
             let light = &b[j * bands..(j + 1) * bands];
             let unit: f64 = weights.iter().zip(rho).zip(light).map(|((w, r), l)| w * r * l).sum();
-            let own = row.entry(stage.patches[j].surface).or_default();
+            let own = by_surface.entry(stage.patches[j].surface).or_default();
             for (k, cause) in Cause::ALL.into_iter().enumerate() {
                 let part = unit * pair.part(cause);
                 own[k] += part;
-                receivers[i][k] += part;
-                std_err[i][k] += (unit * pair.std_err(cause)).powi(2);
+                all[k] += part;
+                variance[k] += (unit * pair.std_err(cause)).powi(2);
             }
         }
-        std_err[i].iter_mut().for_each(|e| *e = e.sqrt());
-        for (surface, parts) in row {
+        (all, variance.map(f64::sqrt), by_surface)
+    };
+    let rows: Vec<_> = (0..split.len()).into_par_iter().map(row).collect();
+    let mut sources: BTreeMap<u32, [Vec<(usize, f64)>; 4]> = BTreeMap::new();
+    let (mut receivers, mut std_err) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
+    for (i, (all, errors, by_surface)) in rows.into_iter().enumerate() {
+        receivers.push(all);
+        std_err.push(errors);
+        for (surface, parts) in by_surface {
             let own = sources.entry(surface).or_default();
             (0..3).for_each(|k| own[k].push((i, parts[k])));
             own[3].push((i, parts.iter().sum()));
@@ -119,8 +125,8 @@ pub fn source_error(
         let of = |j: usize| f.get(i, j) - split.and_then(|s| s.get(i, j)).map_or(0.0, |p| p.mean);
         source.iter().map(|j| unit(i, *j as usize) * of(*j as usize)).sum()
     };
-    let norm =
-        |y: &dyn Fn(usize) -> f64| compensated_sum((0..f.n).map(|i| stage.patches[i].area * y(i).powi(2))).sqrt();
-    let all = norm(&|i| reflected[i]);
-    if all > 0.0 { norm(&error) / all } else { 0.0 }
+    let errors: Vec<f64> = (0..f.n).into_par_iter().map(error).collect();
+    let norm = |y: &[f64]| compensated_sum(y.iter().zip(&stage.patches).map(|(y, p)| p.area * y * y)).sqrt();
+    let all = norm(reflected);
+    if all > 0.0 { norm(&errors) / all } else { 0.0 }
 }

@@ -444,26 +444,9 @@ impl Auditor<'_> {
         let begin = Instant::now();
         let f = self.rows(params)?;
         let seconds = begin.elapsed().as_secs_f64();
-        let aliasing = self.aliasing(context, &f);
+        let aliasing = context.split.aliasing_of(self.stage, &self.matrix_in_form(&f));
         let wrong = self.judged(&f, &format!("the hemi-cube at {params}"))?.0;
         Ok(At { x, wrong, aliasing, seconds })
-    }
-
-    /// Distance of a matrix from the exact values at the centres, relative to the truth.
-    fn aliasing(&self, context: &Context, f: &FormFactors) -> f64 {
-        let f = self.matrix_in_form(f);
-        let (mut error, mut all) = (0.0, 0.0);
-        for i in 0..context.split.len() {
-            let weight = self.stage.patches[i].area.powi(2);
-            let mut row: std::collections::BTreeMap<usize, f64> = f.row(i).collect();
-            for (j, p) in context.split.row(i) {
-                let cube = row.remove(&j).unwrap_or(0.0);
-                error += weight * (cube - p.point).powi(2);
-                all += weight * p.mean * p.mean;
-            }
-            error += weight * row.values().map(|v| v * v).sum::<f64>();
-        }
-        if all > 0.0 { (error / all).sqrt() } else { 0.0 }
     }
 
     fn matrix_in_form<'f>(&self, f: &'f FormFactors) -> std::borrow::Cow<'f, FormFactors> {
