@@ -141,12 +141,39 @@ impl Split {
         let row = |i: usize| {
             let Some((eye, frame)) = stands[i] else { return Vec::new() };
             let seen = sight.row(stage.patches[i].facet, eye, frame.z);
-            let row = merged(i, &seen, cube, truth);
-            let row = row.into_iter().map(|(j, pair)| (j, opened(stage, i, j, pair, eye, frame.z))).collect();
+            let open = |(j, pair): (u32, Pair)| (j, opened_to_point(stage, j, pair, eye, frame.z));
+            let row = merged(i, &seen, cube, truth).into_iter().map(open).collect();
             progress(1);
             row
         };
-        Self::from_rows((0..stands.len()).into_par_iter().map(row).collect())
+        let mut split = Self::from_rows((0..stands.len()).into_par_iter().map(row).collect());
+        split.open_means(stage);
+        split
+    }
+
+    /// Area averages with nothing between. What two patches exchange is the same both ways: computed once.
+    fn open_means(&mut self, stage: &Stage) {
+        let forward = |i: usize| {
+            let of = |(j, p): (usize, &Pair)| if j > i { opened_mean(stage, i, j, p) } else { 0.0 };
+            self.row(i).map(of).collect::<Vec<f64>>()
+        };
+        let upper: Vec<f64> = (0..self.len()).into_par_iter().flat_map_iter(forward).collect();
+        let backward = |i: usize| {
+            let of = |(j, p): (usize, &Pair)| {
+                let known = if j < i { self.find(j, i).map(|k| upper[k]).filter(|m| *m > 0.0) } else { None };
+                match known {
+                    Some(mean) => mean * stage.patches[j].area / stage.patches[i].area,
+                    None => opened_mean(stage, i, j, p),
+                }
+            };
+            self.row(i).zip(&upper[self.row_starts[i]..]).map(|(e, u)| if e.0 > i { *u } else { of(e) }).collect()
+        };
+        let all: Vec<f64> = (0..self.len()).into_par_iter().flat_map_iter::<_, Vec<f64>>(backward).collect();
+        for (pair, open) in self.pairs.iter_mut().zip(all) {
+            // Within the error of the whole it is the whole: the two were computed by different sums.
+            let whole = (pair.mean - open).abs() <= 2.0 * (ROUNDING.0 + ROUNDING.1 * pair.mean);
+            pair.open_mean = if whole { pair.mean } else { open };
+        }
     }
 
     fn from_rows(rows: Vec<Vec<(u32, Pair)>>) -> Self {
@@ -177,11 +204,15 @@ impl Split {
         self.columns[span.clone()].iter().zip(&self.pairs[span]).map(|(j, p)| (*j as usize, p))
     }
 
+    /// Number of a pair.
+    fn find(&self, i: usize, j: usize) -> Option<usize> {
+        let span = self.row_starts[i]..self.row_starts[i + 1];
+        self.columns[span.clone()].binary_search(&(j as u32)).ok().map(|k| span.start + k)
+    }
+
     /// One pair; `None` where nothing is seen of it.
     pub fn get(&self, i: usize, j: usize) -> Option<&Pair> {
-        let span = self.row_starts[i]..self.row_starts[i + 1];
-        let k = self.columns[span.clone()].binary_search(&(j as u32)).ok()?;
-        self.pairs.get(span.start + k)
+        self.find(i, j).map(|k| &self.pairs[k])
     }
 
     /// Distance of another matrix from the exact values at the centres: `sqrt(sum A_i^2 d^2 / sum A_i^2 F^2)`.
@@ -275,22 +306,26 @@ fn merged(i: usize, seen: &[Sight], cube: &FormFactors, truth: Truth) -> Vec<(u3
     columns.into_iter().map(pair).collect()
 }
 
-/// Adds what there would be with nothing between, unless nothing is seen anyhow.
-fn opened(stage: &Stage, i: usize, j: u32, mut pair: Pair, eye: DVec3, normal: DVec3) -> Pair {
-    let (from, to) = (&stage.patches[i].region, &stage.patches[j as usize].region);
-    if pair.point == 0.0 && pair.mean == 0.0 {
+/// Nothing is seen of the pair, from the centre or from anywhere: what there would be with nothing between says nothing.
+fn is_hidden(pair: &Pair) -> bool {
+    pair.point == 0.0 && pair.mean == 0.0
+}
+
+/// Adds what the centre would see with nothing between.
+fn opened_to_point(stage: &Stage, j: u32, mut pair: Pair, eye: DVec3, normal: DVec3) -> Pair {
+    if is_hidden(&pair) {
         return pair;
     }
     if pair.point == 0.0 {
-        pair.open_point = open_factor(eye, normal, to);
-    }
-    pair.open_mean = open_mean(from, to);
-    // Within the error of the whole it is the whole: the two were computed by different sums.
-    if (pair.mean - pair.open_mean).abs() <= 2.0 * (ROUNDING.0 + ROUNDING.1 * pair.mean) {
-        pair.open_mean = pair.mean;
+        pair.open_point = open_factor(eye, normal, &stage.patches[j as usize].region);
     }
     if (pair.point - pair.open_point).abs() <= ROUNDING.0 {
         pair.open_point = pair.point;
     }
     pair
+}
+
+/// The area average with nothing between.
+fn opened_mean(stage: &Stage, i: usize, j: usize, pair: &Pair) -> f64 {
+    if is_hidden(pair) { 0.0 } else { open_mean(&stage.patches[i].region, &stage.patches[j].region) }
 }

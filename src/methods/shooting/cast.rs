@@ -6,7 +6,7 @@ use super::counter::Counter;
 use super::fan::{EXCESS_SINK, Fans, back_sink, escaped_sink};
 use super::geometry::Geometry;
 use super::row::Row;
-use crate::methods::hemicube::{self, DeltaTable, Hemicube, stand};
+use crate::methods::hemicube::{self, DeltaTable, Hemicube, Stand, drawn, stand};
 
 /// Where rows come from.
 pub(super) enum Caster {
@@ -60,7 +60,8 @@ impl Shooting {
 fn hemicube_row(g: &Geometry, patch: usize, table: &DeltaTable, params: &hemicube::Params) -> Row {
     let mut row = Row::default();
     let Some((eye, frame)) = stand(&g.stage.patches[patch], params) else { return row };
-    let (entries, lost) = Hemicube::new(g.world(), table).row(eye, &frame);
+    let drawn = drawn(vec![Stand::at(eye, frame)], patch, params);
+    let (entries, lost) = Hemicube::new(g.world(), table).row_at(&drawn[0]);
     entries.iter().for_each(|(e, f)| row.push_exact(*e, *f));
     let lost = [
         (escaped_sink(&g.stage), lost.nothing),

@@ -98,7 +98,7 @@ impl Default for Params {
 }
 
 const PROGRESSIVE: &str = "rays=N, randomisations=R (8 to 4096), lamps=N (1 to 1024: times the rays of others), factors=rays|hemicube, resolution=N, delta=midpoint|exact, \
-    rotation=DEGREES, unshot=F, shots=N, seconds=S, error=F, ambient=yes|no";
+    rotation=DEGREES, turn=SEED, jitter=SEED, unshot=F, shots=N, seconds=S, error=F, ambient=yes|no";
 const REDISTRIBUTION: &str = ", strategy=one|two, threshold=F, samples=N (1 to 64), ranking=samples|exact, before=F \
     (share unshot when an edit comes)";
 
@@ -130,7 +130,7 @@ impl Params {
             seen.push(key);
             match key {
                 "factors" if value == "hemicube" => _ = cube.get_or_insert_default(),
-                "resolution" | "delta" | "rotation" => cube.get_or_insert_default().push(part),
+                "resolution" | "delta" | "rotation" | "turn" | "jitter" => cube.get_or_insert_default().push(part),
                 _ => params.set(key, value, redistribution).ok_or_else(|| wrong(part))?,
             }
         }
@@ -188,7 +188,9 @@ impl Params {
             Factors::Hemicube(p) => {
                 let hemicube::Params { resolution, rotation, .. } = p;
                 let delta = if p.delta == hemicube::Delta::Exact { "exact" } else { "midpoint" };
-                format!("factors=hemicube,resolution={resolution},delta={delta},rotation={rotation}")
+                let drawn = |key: &str, seed: Option<u64>| seed.map_or(String::new(), |s| format!(",{key}={s}"));
+                let (turn, jitter) = (drawn("turn", p.turn), drawn("jitter", p.jitter));
+                format!("factors=hemicube,resolution={resolution},delta={delta},rotation={rotation}{turn}{jitter}")
             }
         }];
         parts.extend((self.lamps != default.lamps).then(|| format!("lamps={}", self.lamps)));
