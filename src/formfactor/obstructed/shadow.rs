@@ -11,6 +11,8 @@ const EDGE_ON: f64 = 1e-13;
 pub(super) struct Scratch {
     /// Half-planes of each body's shadow.
     shadows: Vec<Vec<HalfPlane>>,
+    /// Bodies whose shadows cut the polygon at hand.
+    cutting: Vec<usize>,
     part: Vec<DVec2>,
     other: Vec<DVec2>,
     pieces: Pieces,
@@ -75,25 +77,30 @@ impl View {
 
     /// `2 pi` times the form factor from `x` to the part of a polygon on the target that lies in the shadows cast.
     pub fn in_shadow(&self, x: DVec3, polygon: &[DVec2], scratch: &mut Scratch) -> f64 {
-        let mut sum = 0.0;
-        for k in 0..self.bodies.len() {
-            let (before, rest) = scratch.shadows.split_at(k);
-            let shadow = &rest[0];
-            if shadow.is_empty() || shadow.iter().any(|h| polygon.iter().all(|p| h.at(*p) <= 0.0)) {
-                continue;
+        scratch.cutting.clear();
+        for (k, shadow) in scratch.shadows.iter().enumerate().filter(|(_, s)| !s.is_empty()) {
+            match lies(polygon, shadow) {
+                Shadow::Misses => {}
+                Shadow::Hides => return self.lambert(x, polygon),
+                Shadow::Cuts => scratch.cutting.push(k),
             }
+        }
+        let mut sum = 0.0;
+        for n in 0..scratch.cutting.len() {
             scratch.part.clear();
             scratch.part.extend_from_slice(polygon);
+            let shadow = &scratch.shadows[scratch.cutting[n]];
             if !cut_to(&mut scratch.part, &mut scratch.other, shadow) {
                 continue;
             }
-            if before.iter().all(Vec::is_empty) {
+            if n == 0 {
                 sum += self.lambert(x, &scratch.part);
                 continue;
             }
             scratch.pieces.clear();
             scratch.pieces.push(&scratch.part);
-            for earlier in before.iter().filter(|s| !s.is_empty()) {
+            for k in &scratch.cutting[..n] {
+                let earlier = &scratch.shadows[*k];
                 scratch.next.clear();
                 for piece in 0..scratch.pieces.ends.len() {
                     let polygon = scratch.pieces.get(piece);
@@ -178,6 +185,24 @@ impl Body {
         }
         if out.is_empty() { Shadow::Hides } else { Shadow::Cuts }
     }
+}
+
+/// How the common part of half-planes lies to a convex polygon. A shadow that passes a corner by may count as cutting.
+fn lies(polygon: &[DVec2], shadow: &[HalfPlane]) -> Shadow {
+    let mut hides = true;
+    for h in shadow {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for p in polygon {
+            let at = h.at(*p);
+            low = low.min(at);
+            high = high.max(at);
+        }
+        if high <= 0.0 {
+            return Shadow::Misses;
+        }
+        hides &= low >= 0.0;
+    }
+    if hides { Shadow::Hides } else { Shadow::Cuts }
 }
 
 /// Cuts a polygon to half-planes; false if nothing of it is left.
