@@ -1,7 +1,7 @@
 //! What single points see past exact shadows: against published closed forms, closure, and fine hemi-cubes.
 
 use etalon::estimate::PointSight;
-use etalon::formfactor::PointView;
+use etalon::formfactor::{Eye, Obstacle, Screen, point_to_polygon};
 use etalon::io::scene::builtin;
 use etalon::math::{DVec3, Polytope};
 use etalon::methods::hemicube::{self, Delta, Params};
@@ -40,10 +40,12 @@ fn known_values_past_plates() {
         ),
     ];
     for (name, plates, known) in cases {
-        let between: Vec<&Polytope> = plates.iter().collect();
+        let obstacles: Vec<Obstacle> = plates.into_iter().map(Obstacle::new).collect();
         let target = square(0.5, 1.0);
-        let mut view = PointView::new(DVec3::ZERO, DVec3::Z, &target, &between);
-        let (open, seen) = view.factors(&target);
+        let screen = Screen::new(&target);
+        let eye = Eye::new(DVec3::ZERO, DVec3::Z, &obstacles, None, 1.5);
+        let open = point_to_polygon(DVec3::ZERO, DVec3::Z, &target);
+        let seen = eye.onto(&screen, None).map_or(0.0, |mut view| view.factors(&target).1);
         assert!((open - 0.239_456_470_5).abs() < 1e-10, "{name}: {open}");
         assert!((seen - known).abs() < 1e-10, "{name}: {seen} against {known}");
     }

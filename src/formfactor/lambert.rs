@@ -55,7 +55,7 @@ pub fn point_to_polygon(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
 
 /// The part of a convex polygon that a point over the horizon of the unit vector `normal` sees from its front; `None`
 /// if it sees nothing of it.
-pub fn facing_point(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> Option<Vec<DVec3>> {
+pub(super) fn facing_point(point: DVec3, normal: DVec3, polygon: &[DVec3]) -> Option<Vec<DVec3>> {
     let reach = polygon.iter().map(|p| p.distance(point)).fold(0.0, f64::max);
     let height = (point - polygon[0]).dot(unit_normal(polygon));
     // In floating point a point "in" the plane stands a few roundings off it.

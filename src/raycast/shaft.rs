@@ -39,20 +39,6 @@ impl Shaft {
         Self { planes, corners: [a.to_vec(), b.to_vec()], slack }
     }
 
-    /// The pyramid from a point onto a convex polygon that it sees from its front, above the horizon of `normal`.
-    pub fn from_point(point: DVec3, normal: DVec3, polygon: &[DVec3], slack: f64) -> Self {
-        let mut planes = vec![Plane { normal, offset: normal.dot(point) }, Plane::of(polygon)];
-        let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64;
-        for k in 0..polygon.len() {
-            let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
-            let Some(across) = (a - point).cross(b - point).try_normalize() else { continue };
-            let inner = if across.dot(middle - point) < 0.0 { -across } else { across };
-            let plane = Plane { normal: inner, offset: inner.dot(point) };
-            planes.extend(polygon.iter().all(|v| plane.height(*v) >= -slack).then_some(plane));
-        }
-        Self { planes, corners: [vec![point], polygon.to_vec()], slack }
-    }
-
     /// Which of the candidates stand in the shaft.
     pub fn between<'a>(&self, bodies: &'a [Polytope], candidates: impl Iterator<Item = u32> + 'a) -> Between {
         let mut found = Vec::new();

@@ -6,7 +6,7 @@ mod point;
 mod shadow;
 mod view;
 
-pub use point::PointView;
+pub use point::{Eye, Obstacle, PointView, Screen};
 
 use crate::math::{DVec3, Plane, Polytope, area};
 use shadow::Scratch;

@@ -4,13 +4,13 @@ use super::view::{Body, View};
 use crate::math::{DVec2, DVec3};
 
 /// Heights over a plate below this share of the pair's extent are rounding.
-const EDGE_ON: f64 = 1e-13;
+pub(super) const EDGE_ON: f64 = 1e-13;
 
 /// Room for the polygons of one evaluation, used again and again.
 #[derive(Default)]
 pub(super) struct Scratch {
     /// Half-planes of each body's shadow.
-    shadows: Vec<Vec<HalfPlane>>,
+    pub shadows: Vec<Vec<HalfPlane>>,
     /// Bodies whose shadows cut the polygon at hand.
     cutting: Vec<usize>,
     part: Vec<DVec2>,
@@ -21,14 +21,14 @@ pub(super) struct Scratch {
 
 /// `a u + b v + c >= 0`.
 #[derive(Clone, Copy)]
-struct HalfPlane {
-    a: f64,
-    b: f64,
-    c: f64,
+pub(super) struct HalfPlane {
+    pub a: f64,
+    pub b: f64,
+    pub c: f64,
 }
 
 impl HalfPlane {
-    fn at(&self, p: DVec2) -> f64 {
+    pub fn at(&self, p: DVec2) -> f64 {
         self.a * p.x + self.b * p.y + self.c
     }
 }
@@ -77,11 +77,25 @@ impl View {
 
     /// `2 pi` times the form factor from `x` to the part of a polygon on the target that lies in the shadows cast.
     pub fn in_shadow(&self, x: DVec3, polygon: &[DVec2], scratch: &mut Scratch) -> f64 {
+        scratch.in_shadow(x, self.normal, polygon)
+    }
+
+    /// Lambert's sum over a polygon in the target's plane: `2 pi` times the form factor.
+    pub fn lambert(&self, x: DVec3, polygon: &[DVec2]) -> f64 {
+        lambert(x, self.normal, polygon)
+    }
+}
+
+impl Scratch {
+    /// `2 pi` times the form factor from `x`, with this normal, to the part of a polygon in the plane z = 0 that lies in
+    /// the shadows.
+    pub fn in_shadow(&mut self, x: DVec3, normal: DVec3, polygon: &[DVec2]) -> f64 {
+        let scratch = self;
         scratch.cutting.clear();
         for (k, shadow) in scratch.shadows.iter().enumerate().filter(|(_, s)| !s.is_empty()) {
             match lies(polygon, shadow) {
                 Shadow::Misses => {}
-                Shadow::Hides => return self.lambert(x, polygon),
+                Shadow::Hides => return lambert(x, normal, polygon),
                 Shadow::Cuts => scratch.cutting.push(k),
             }
         }
@@ -94,7 +108,7 @@ impl View {
                 continue;
             }
             if n == 0 {
-                sum += self.lambert(x, &scratch.part);
+                sum += lambert(x, normal, &scratch.part);
                 continue;
             }
             scratch.pieces.clear();
@@ -109,33 +123,33 @@ impl View {
                 std::mem::swap(&mut scratch.pieces, &mut scratch.next);
             }
             for piece in 0..scratch.pieces.ends.len() {
-                sum += self.lambert(x, scratch.pieces.get(piece));
+                sum += lambert(x, normal, scratch.pieces.get(piece));
             }
-        }
-        sum
-    }
-
-    /// Lambert's sum over a polygon in the target's plane: `2 pi` times the form factor.
-    pub fn lambert(&self, x: DVec3, polygon: &[DVec2]) -> f64 {
-        let (foot, h, n) = (x.truncate(), x.z, self.normal);
-        let mut sum = 0.0;
-        let mut a = polygon[polygon.len() - 1] - foot;
-        for p in polygon {
-            let b = *p - foot;
-            let cross = DVec3::new(h * (b.y - a.y), h * (a.x - b.x), a.perp_dot(b));
-            let sine = cross.length();
-            if sine > 0.0 {
-                sum -= sine.atan2(a.dot(b) + h * h) * cross.dot(n) / sine;
-            }
-            a = b;
         }
         sum
     }
 }
 
+/// Lambert's sum over a polygon in the plane z = 0 from a point before it with this normal: `2 pi` times the form factor.
+pub(super) fn lambert(x: DVec3, normal: DVec3, polygon: &[DVec2]) -> f64 {
+    let (foot, h) = (x.truncate(), x.z);
+    let mut sum = 0.0;
+    let mut a = polygon[polygon.len() - 1] - foot;
+    for p in polygon {
+        let b = *p - foot;
+        let cross = DVec3::new(h * (b.y - a.y), h * (a.x - b.x), a.perp_dot(b));
+        let sine = cross.length();
+        if sine > 0.0 {
+            sum -= sine.atan2(a.dot(b) + h * h) * cross.dot(normal) / sine;
+        }
+        a = b;
+    }
+    sum
+}
+
 /// How a shadow lies to the target.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Shadow {
+pub(super) enum Shadow {
     Misses,
     Hides,
     Cuts,
@@ -188,7 +202,7 @@ impl Body {
 }
 
 /// How the common part of half-planes lies to a convex polygon. A shadow that passes a corner by may count as cutting.
-fn lies(polygon: &[DVec2], shadow: &[HalfPlane]) -> Shadow {
+pub(super) fn lies(polygon: &[DVec2], shadow: &[HalfPlane]) -> Shadow {
     let mut hides = true;
     for h in shadow {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);

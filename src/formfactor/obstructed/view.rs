@@ -18,8 +18,6 @@ pub(super) struct View {
     pub bodies: Vec<Body>,
     /// Extent of the pair, m.
     pub extent: f64,
-    /// Origin and unit axes of the target's plane, in coordinates of the scene.
-    frame: [DVec3; 3],
 }
 
 /// A body in coordinates of the target.
@@ -39,10 +37,10 @@ pub(super) struct Body {
 }
 
 /// Share of the extent below which heights are rounding.
-const SLACK: f64 = 1e-12;
+pub(super) const SLACK: f64 = 1e-12;
 
 /// Margin over what rounded corners are out of a plane.
-const MARGIN: f64 = 4.0;
+pub(super) const MARGIN: f64 = 4.0;
 
 impl View {
     /// The view of `target` from `domain`, both cut to what lies in front of the other already. Bodies that cannot
@@ -59,8 +57,7 @@ impl View {
         let cut = |b: &&Polytope| {
             // A corner shared with the target may stick out of a plane as far as corners are rounded: a sliver that
             // hides nothing, but whose edges point anywhere.
-            let out = b.planes().iter().map(|p| if b.is_flat() { out_of_plane(p, b.vertices()) } else { above(p, b) });
-            let out = out.fold(0.0, f64::max);
+            let out = roughness(b);
             let slack = rounding + MARGIN * out;
             let front = b.in_front(&near, slack)?.in_front(&far, slack)?;
             let plane = |p: &Plane| Plane { normal: into(p.normal), offset: -p.height(centre) };
@@ -84,20 +81,12 @@ impl View {
             target: target.iter().map(|p| place(*p).truncate()).collect(),
             bodies: bodies.iter().filter_map(cut).collect(),
             extent,
-            frame: [centre, e1, e2],
         }
     }
 
     /// The point of the domain with the given coordinates.
     pub fn point(&self, p: DVec2) -> DVec3 {
         self.origin + self.axes[0] * p.x + self.axes[1] * p.y
-    }
-
-    /// A polygon of the target's plane, in coordinates of that plane.
-    pub fn on_target(&self, polygon: &[DVec3], out: &mut Vec<DVec2>) {
-        let [centre, e1, e2] = self.frame;
-        out.clear();
-        out.extend(polygon.iter().map(|p| DVec2::new((*p - centre).dot(e1), (*p - centre).dot(e2))));
     }
 
     /// Height of a point over the plane of the domain.
@@ -112,8 +101,14 @@ impl View {
     }
 }
 
+/// How far the corners of a body are rounded out of its faces, m.
+pub(super) fn roughness(body: &Polytope) -> f64 {
+    let out = |p: &Plane| if body.is_flat() { out_of_plane(p, body.vertices()) } else { above(p, body) };
+    body.planes().iter().map(out).fold(0.0, f64::max)
+}
+
 /// How far corners lie out of their plane, m.
-fn out_of_plane(plane: &Plane, corners: &[DVec3]) -> f64 {
+pub(super) fn out_of_plane(plane: &Plane, corners: &[DVec3]) -> f64 {
     corners.iter().map(|v| plane.height(*v).abs()).fold(0.0, f64::max)
 }
 
@@ -123,11 +118,11 @@ fn above(plane: &Plane, body: &Polytope) -> f64 {
 }
 
 /// Reach of a body from its centre, m.
-fn size(body: &Polytope) -> f64 {
+pub(super) fn size(body: &Polytope) -> f64 {
     body.vertices().iter().map(|v| v.distance(body.centre())).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-fn longest_edge(polygon: &[DVec3]) -> DVec3 {
+pub(super) fn longest_edge(polygon: &[DVec3]) -> DVec3 {
     let next = polygon.iter().cycle().skip(1);
     let edges = polygon.iter().zip(next).map(|(a, b)| *b - *a);
     let longest = edges.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
