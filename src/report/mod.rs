@@ -5,6 +5,7 @@
 
 mod artifact;
 mod asked;
+pub mod audit;
 pub mod curves;
 mod figures;
 mod format;
