@@ -23,7 +23,7 @@ const MAP: &[(&str, &[&str])] = &[
     ("audit", &["*", "-reference", "-doctor"]),
     ("io", &["math", "view", "scene", "solution"]),
     ("study", &["*"]),
-    ("report", &["math", "stats", "view", "scene", "solution", "metrics", "render", "study", "io"]),
+    ("report", &["math", "stats", "view", "scene", "solution", "metrics", "render", "audit", "study", "io"]),
     ("api", &["*", "-report"]),
     ("cli", &["*", "-api"]),
 ];

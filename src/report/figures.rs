@@ -170,8 +170,8 @@ fn beyond(record: &Record) -> String {
 }
 
 /// (unit, what a value is multiplied by for its label).
-type Unit = (&'static str, f64);
-const WATTS: Unit = ("W/m\u{b2}, luminance", 1.0);
+pub(super) type Unit = (&'static str, f64);
+pub(super) const WATTS: Unit = ("W/m\u{b2}, luminance", 1.0);
 const PERCENT: Unit = ("% of the reference", 100.0);
 const ERRORS: Unit = ("standard errors", 1.0);
 
@@ -223,25 +223,30 @@ fn smooth(record: &Record, exposure: &Exposure, mesh: &Mesh) -> Vec<Plate> {
 }
 
 fn false_colour(kind: &'static str, title: &'static str, what: &str, field: &Field, scale: Scale, unit: Unit) -> Plate {
-    let beyond = if scale.beyond > 0.0 {
-        format!(
-            " {} % of the area lies beyond the range and has its end colours.",
-            significant(100.0 * scale.beyond, 2)
-        )
-    } else {
-        String::new()
-    };
-    let bar = ColourBar {
-        colours: scale.stops(BAR_STOPS).into_iter().map(hex).collect(),
-        ticks: scale
-            .ticks()
-            .iter()
-            .map(|t| (round_number(100.0 * t.at), label(unit.1 * t.value, scale.low())))
-            .collect(),
-        unit: unit.0,
-    };
+    let beyond = beyond_range(&scale);
+    let bar = colour_bar(&scale, unit);
     let palette = field.values.iter().map(|v| v.map(|v| scale.colour(v))).collect();
     Plate { kind, title, caption: format!("{what}{beyond}"), fill: Fill::Flat(palette), bar: Some(bar) }
+}
+
+/// What a caption says of values that a scale does not reach.
+pub(super) fn beyond_range(scale: &Scale) -> String {
+    if scale.beyond > 0.0 {
+        let share = significant(100.0 * scale.beyond, 2);
+        format!(" {share} % of the area lies beyond the range and has its end colours.")
+    } else {
+        String::new()
+    }
+}
+
+/// The bar of a scale.
+pub(super) fn colour_bar(scale: &Scale, unit: Unit) -> ColourBar {
+    let tick = |t: &crate::render::Tick| (round_number(100.0 * t.at), label(unit.1 * t.value, scale.low()));
+    ColourBar {
+        colours: scale.stops(BAR_STOPS).into_iter().map(hex).collect(),
+        ticks: scale.ticks().iter().map(tick).collect(),
+        unit: unit.0,
+    }
 }
 
 /// A mark's label; signed on scales that reach below zero.
@@ -267,7 +272,7 @@ fn marks(record: &Record, visibility: &Visibility) -> Vec<Mark> {
 }
 
 /// File-name stems: the camera's name where it is safe, made different where two are alike.
-fn stems(views: &[View]) -> Vec<String> {
+pub(super) fn stems(views: &[View]) -> Vec<String> {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let mut stems: Vec<String> = Vec::new();
     for (k, view) in views.iter().enumerate() {

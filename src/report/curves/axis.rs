@@ -4,7 +4,7 @@ use crate::report::format::{count, percent_exact, round_number};
 
 /// What stands at the marks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Unit {
+pub(in crate::report) enum Unit {
     /// Fractions, shown as percentages.
     Percent,
     /// Whole numbers.
@@ -29,7 +29,7 @@ impl Unit {
 
 /// A logarithmic axis over some pixels.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LogAxis {
+pub(in crate::report) struct LogAxis {
     /// Ends in the quantity shown.
     pub low: f64,
     pub high: f64,
@@ -40,7 +40,7 @@ pub(super) struct LogAxis {
 
 impl LogAxis {
     /// An axis on which all of `values` fit, with some room; only those above 0 count. `None` without any.
-    pub(super) fn over(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
+    pub(in crate::report) fn over(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Option<Self> {
         let (low, high) = values
             .filter(|v| *v > 0.0 && v.is_finite())
             .fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
@@ -53,13 +53,13 @@ impl LogAxis {
     }
 
     /// Place of a value, pixels; what lies beyond an end stands there.
-    pub(super) fn place(&self, x: f64) -> f64 {
+    pub(in crate::report) fn place(&self, x: f64) -> f64 {
         let share = ((x / self.low).ln() / (self.high / self.low).ln()).clamp(0.0, 1.0);
         self.from + (self.to - self.from) * share
     }
 
     /// Marks: place, and the label of those that have one.
-    pub(super) fn marks(&self, unit: Unit) -> Vec<(f64, Option<String>)> {
+    pub(in crate::report) fn marks(&self, unit: Unit) -> Vec<(f64, Option<String>)> {
         let decades = (self.high / self.low).log10();
         let labelled: &[u32] = if decades < 1.2 {
             &[1, 2, 3, 5, 7]

@@ -1,6 +1,6 @@
 //! Curves as tables, drawings and a page: of a run, of a refinement of the mesh, of two runs overlaid.
 
-mod axis;
+pub(super) mod axis;
 mod figures;
 mod page;
 mod pictures;

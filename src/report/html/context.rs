@@ -133,7 +133,8 @@ impl Page {
     }
 }
 
-fn class(verdict: Option<Verdict>) -> &'static str {
+/// What a page chooses colour and icon of a verdict by.
+pub(in crate::report) fn class(verdict: Option<Verdict>) -> &'static str {
     match verdict {
         Some(Verdict::Pass) => "pass",
         Some(Verdict::Fail) => "fail",
@@ -205,7 +206,7 @@ fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
 }
 
 /// A true minus sign before numbers, and narrow no-break spaces before per cent signs.
-pub(super) fn minus(text: &str) -> String {
+pub(in crate::report) fn minus(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut chars = text.chars().peekable();
     let mut before = ' ';

@@ -2,10 +2,10 @@
 
 mod bars;
 mod charts;
-mod context;
+pub(super) mod context;
 mod findings;
 mod groups;
-mod pictures;
+pub(super) mod pictures;
 mod settings;
 mod sources;
 

@@ -29,8 +29,8 @@ pub(super) struct FigureBlock {
     pub marks: Vec<MarkBlock>,
 }
 
-#[derive(Debug, Serialize)]
-pub(super) struct BarBlock {
+#[derive(Debug, Clone, Serialize)]
+pub(in crate::report) struct BarBlock {
     pub stops: Vec<(String, String)>,
     pub ticks: Vec<(String, String)>,
     pub unit: &'static str,
@@ -100,7 +100,7 @@ fn mark_blocks(view: &ViewFigures, width: u32) -> Vec<MarkBlock> {
     view.marks.iter().map(&mut block).collect()
 }
 
-fn bar_block(bar: &ColourBar) -> BarBlock {
+pub(in crate::report) fn bar_block(bar: &ColourBar) -> BarBlock {
     let last = bar.colours.len().max(2) - 1;
     let stop = |(k, colour): (usize, &String)| (round_number(100.0 * k as f64 / last as f64), colour.clone());
     BarBlock {

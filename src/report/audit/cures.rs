@@ -1,0 +1,119 @@
+//! What would mend it: every cure that was run, by its cost. All of this depends on the clock.
+
+use super::chart::{Axis, Chart, Dot, Series};
+use super::charts::ChartBlock;
+use super::page::{Number, number};
+use crate::audit::Cure;
+use crate::report::curves::axis::Unit;
+use crate::report::format::{count, percent, percent_exact, significant};
+use crate::report::html::context::{class, minus};
+use crate::study::audit::{AuditRecord, CureRun};
+use serde::Serialize;
+
+/// Letters of a source's name above its column.
+const LETTERS: usize = 24;
+
+/// The cure table.
+#[derive(Debug, Serialize)]
+pub(super) struct Cures {
+    /// Names of the sources that have a column each.
+    pub sources: Vec<String>,
+    pub rows: Vec<CureRow>,
+    pub chart: Option<ChartBlock>,
+    /// True where nothing was replaced by closed forms: then no points of exact visibility.
+    pub any_points: bool,
+}
+
+/// A cure.
+#[derive(Debug, Serialize)]
+pub(super) struct CureRow {
+    pub words: String,
+    /// It is the hemi-cube as it is.
+    pub plain: bool,
+    pub rms: Number,
+    pub top1: Number,
+    pub class: &'static str,
+    pub word: &'static str,
+    pub seconds: String,
+    pub times: String,
+    pub hemicubes: String,
+    pub pixels: String,
+    pub points: String,
+    /// What it leaves of each source's error, and whether that is within the limit.
+    pub left: Vec<(String, bool)>,
+}
+
+/// The table; `None` where no cures were run.
+pub(super) fn cures(record: &AuditRecord) -> Option<Cures> {
+    if record.cures.is_empty() {
+        return None;
+    }
+    Some(Cures {
+        sources: record.sources.iter().map(|s| shortened(&s.source.name)).collect(),
+        rows: record.cures.iter().map(|c| row(c, record)).collect(),
+        chart: chart(record),
+        any_points: record.cures.iter().any(|c| c.points > 0),
+    })
+}
+
+/// A name that fits over a column.
+fn shortened(name: &str) -> String {
+    let short: String = name.chars().take(LETTERS).collect();
+    if short.len() < name.len() { format!("{short}\u{2026}") } else { short }
+}
+
+fn row(c: &CureRun, record: &AuditRecord) -> CureRow {
+    let plain = record.cures.iter().find(|c| c.cure == Cure::None).map(|c| c.seconds).filter(|s| *s > 0.0);
+    let within = |e: f64| record.limit.is_some_and(|l| e <= l);
+    CureRow {
+        words: c.words.clone(),
+        plain: c.cure == Cure::None,
+        rms: number(c.wrong.rms.as_ref()),
+        top1: number(c.wrong.top1.as_ref()),
+        class: class(c.verdict),
+        word: super::page::chip(c.verdict),
+        seconds: significant(c.seconds, 3),
+        times: plain.map_or(String::new(), |p| significant(c.seconds / p, 2)),
+        hemicubes: count(c.hemicubes),
+        pixels: count(c.pixels as usize),
+        points: if c.points > 0 { count(c.points) } else { String::new() },
+        left: c.by_source.iter().map(|e| (minus(&percent(*e)), within(*e))).collect(),
+    }
+}
+
+/// What a cure is called where room is short.
+fn tag(cure: &Cure) -> String {
+    match cure {
+        Cure::None => "as it is".into(),
+        Cure::Resolution { resolution } => format!("resolution {resolution}"),
+        Cure::Rotation => "turned".into(),
+        Cure::Jitter => "jittered".into(),
+        Cure::Subdivision { cells, .. } => format!("{cells} x {cells} parts"),
+        Cure::Analytic { .. } => "closed forms".into(),
+        Cure::SubdivisionAndAnalytic { cells, .. } => format!("closed forms, {cells} x {cells} parts"),
+    }
+}
+
+/// Error against seconds.
+fn chart(record: &AuditRecord) -> Option<ChartBlock> {
+    let dot = |c: &CureRun| {
+        let e = c.wrong.rms.filter(|e| e.value > 0.0)?;
+        let hint = format!("{}: {} in {} s", c.words, percent(e.value), significant(c.seconds, 3));
+        Some(Dot { x: c.seconds, y: e.value, interval: Some((e.low, e.high)), label: Some(tag(&c.cure)), hint })
+    };
+    let of = |plain: bool| record.cures.iter().filter(move |c| (c.cure == Cure::None) == plain).filter_map(dot);
+    let series = |class: &str, dots| Series { class: class.into(), dots, ..Series::default() };
+    let chart = Chart {
+        name: "Error against cost".into(),
+        x: Axis::Log(Unit::Plain),
+        y: Axis::Log(Unit::Percent),
+        x_title: "seconds for the form factors".into(),
+        y_title: "error of reflected light (eq. 7)".into(),
+        series: vec![series("k1", of(true).collect()), series("k0", of(false).collect())],
+        rules: record.limit.map(|l| (l, format!("limit {}", percent_exact(l)))).into_iter().collect(),
+    };
+    let caption = "Every dot is a run of the mended solver, judged like the hemi-cube itself; bars are the intervals. Lower \
+                   is better, further left is cheaper."
+        .into();
+    Some(ChartBlock { id: "cures", title: chart.name.clone(), caption, svg: chart.svg()?, legend: Vec::new() })
+}

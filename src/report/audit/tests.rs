@@ -1,0 +1,240 @@
+//! The page of small real audits.
+
+use super::*;
+use crate::io::scene::builtin;
+use crate::raycast::KernelKind;
+use crate::reference::{Options, Progress};
+use crate::render::views;
+use crate::report::format::percent_estimate;
+use crate::report::html::context::minus;
+use crate::study::Session;
+use crate::study::audit::{AuditRequest, Form, audit};
+use std::sync::OnceLock;
+
+struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _: &str, _: Option<u64>) {}
+    fn advance(&self, _: u64) {}
+}
+
+fn stage() -> Stage {
+    builtin("cube-one-emitter").expect("a scene").at(0).expect("a state")
+}
+
+fn request<'a>() -> AuditRequest<'a> {
+    AuditRequest {
+        scene: "cube <with> \"names\" & more".into(),
+        params: "resolution=20".parse().expect("settings"),
+        resolutions: vec![10, 40, 80],
+        rotations: 3,
+        sources: Vec::new(),
+        limit: Some(0.01),
+        confidence: 0.95,
+        form: Form::Receiver,
+        theirs: None,
+        cures: true,
+        reference: Options::default(),
+    }
+}
+
+/// One audit for all tests.
+fn record() -> &'static AuditRecord {
+    static RECORD: OnceLock<AuditRecord> = OnceLock::new();
+    RECORD.get_or_init(|| {
+        let stage = stage();
+        let session = Session::open(&stage, KernelKind::Builtin).expect("a kernel");
+        audit(&session, &request(), &Silent).expect("an audit").record
+    })
+}
+
+fn files(record: &AuditRecord) -> Vec<Artifact> {
+    let stage = stage();
+    let session = Session::open(&stage, KernelKind::Builtin).expect("a kernel");
+    let views = views(&session.tracer());
+    let image = Raster { width: 2, height: 1, rgba: vec![255; 8] };
+    let pictures = [AuditPicture { name: "unfolded-1.png".into(), caption: "patch 1 <b> of -2 %".into(), image }];
+    let timing = [Phase { name: "audit".into(), seconds: 1.25 }];
+    let extras = AuditExtras { stage: &stage, views: &views, pictures: &pictures, timing: &timing };
+    audit_files(record, &extras).expect("files")
+}
+
+fn page(record: &AuditRecord) -> String {
+    let files = files(record);
+    assert_eq!(files[0].name, AUDIT_PAGE);
+    String::from_utf8(files[0].bytes.clone()).expect("text")
+}
+
+/// Text with what the template does to it.
+fn shown(text: &str) -> String {
+    let text = minus(text);
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            '\'' => out += "&#x27;",
+            '/' => out += "&#x2f;",
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[test]
+fn the_page_holds_verdict_numbers_causes_sources_and_cures() {
+    let record = record();
+    let page = page(record);
+    let rms = percent_estimate(&record.wrong.rms.expect("an error"), false).value;
+    assert!(page.matches(&minus(&rms)).count() >= 3, "{rms}");
+    let word = match record.verdict.expect("a verdict") {
+        crate::metrics::Verdict::Pass => "PASS",
+        crate::metrics::Verdict::Fail => "FAIL",
+        crate::metrics::Verdict::Inconclusive => "INCONCLUSIVE",
+    };
+    assert!(page.contains(&format!("<span class=\"word\">{word}</span>")));
+    for text in record.findings.iter().map(|f| &f.text).chain(record.cures.iter().map(|c| &c.words)) {
+        assert!(page.contains(&shown(text)), "{text}");
+    }
+    let parts = ["By cause", "By source", "Worst receivers of", "Cures", "Error against cost", "Error against resolution"];
+    let more = ["Counted over exact", "Error under rotation", "Where it is wrong", "What the hemi-cube saw"];
+    for part in parts.iter().chain(&more).chain(&["Aliasing", "Proximity", "Visibility", "How it was made"]) {
+        assert!(page.contains(part), "{part}");
+    }
+    let rate = record.rate.expect("a rate").value;
+    assert!(page.contains(&minus(&format!("the power {rate:.2} of"))), "{rate}");
+    assert!(page.contains("class=\"fit\"") && page.contains(">limit 1 %</text>"));
+}
+
+#[test]
+fn names_stay_text_and_nothing_comes_from_outside() {
+    let page = page(record());
+    assert!(page.contains("cube &lt;with&gt; &quot;names&quot; &amp; more") && !page.contains("<with>"));
+    assert!(page.contains("patch 1 &lt;b&gt; of \u{2212}2\u{202f}%"));
+    assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("src=\"un"));
+}
+
+/// Every element that is opened is closed, in order.
+#[test]
+fn the_page_is_well_formed() {
+    let page = page(record());
+    let void = ["meta", "img", "br", "!DOCTYPE"];
+    let mut open: Vec<String> = Vec::new();
+    let style = page.find("<style>").expect("a style")..page.find("</style>").expect("its end");
+    let mut at = 0;
+    while let Some(begin) = page[at..].find('<').map(|k| k + at) {
+        if style.contains(&begin) && begin > style.start {
+            at = style.end;
+            open.pop();
+            at += "</style>".len();
+            continue;
+        }
+        if page[begin..].starts_with("<!--") {
+            at = begin + page[begin..].find("-->").expect("an end of the comment");
+            continue;
+        }
+        let end = begin + page[begin..].find('>').expect("an end of the tag");
+        let tag = &page[begin + 1..end];
+        let name: String = tag.trim_start_matches('/').chars().take_while(|c| !c.is_whitespace() && *c != '/').collect();
+        if tag.starts_with('/') {
+            assert_eq!(open.pop().as_deref(), Some(name.as_str()), "at {}", &page[begin.saturating_sub(200)..end]);
+        } else if !tag.ends_with('/') && !void.contains(&name.as_str()) {
+            open.push(name);
+        }
+        at = end;
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+#[test]
+fn maps_and_pictures_stand_beside_the_page() {
+    let files = files(record());
+    let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
+    assert_eq!(names.iter().filter(|n| n.starts_with("map-")).count() % 5, 0);
+    for kind in ["light", "error", "aliasing", "proximity", "visibility"] {
+        assert!(names.iter().any(|n| n.starts_with("map-") && n.ends_with(&format!("-{kind}.png"))), "{kind}");
+    }
+    assert!(names.contains(&"unfolded-1.png"));
+    assert!(files[1..].iter().all(|f| f.bytes.starts_with(b"\x89PNG")));
+}
+
+/// The maps show the causes: a cause that does nothing is the colour of nothing everywhere.
+#[test]
+fn a_map_follows_its_cause() {
+    let bytes = |r: &AuditRecord, kind: &str| {
+        let end = format!("-{kind}.png");
+        files(r).into_iter().find(|f| f.name.ends_with(&end)).expect("a map").bytes
+    };
+    let mut other = record().clone();
+    other.receivers.iter_mut().for_each(|r| r.carried[0] = 0.0);
+    assert_ne!(bytes(record(), "aliasing"), bytes(&other, "aliasing"));
+    assert_ne!(bytes(record(), "error"), bytes(&other, "error"));
+    assert_eq!(bytes(record(), "light"), bytes(&other, "light"));
+}
+
+/// What stands outside of the marked blocks.
+fn outside(page: &str) -> String {
+    let mut out = String::new();
+    let mut rest = page;
+    while let Some(begin) = rest.find("<!-- wall-clock: begin") {
+        out += &rest[..begin];
+        let end = "<!-- wall-clock: end -->";
+        rest = &rest[begin + rest[begin..].find(end).expect("an end") + end.len()..];
+    }
+    out + rest
+}
+
+#[test]
+fn only_marked_blocks_depend_on_the_clock() {
+    let slow = {
+        let mut r = record().clone();
+        for (k, c) in r.cures.iter_mut().enumerate() {
+            c.seconds *= 3.0 + k as f64;
+        }
+        r.cures.reverse();
+        r.resolutions.iter_mut().chain(&mut r.rotations).for_each(|a| a.seconds *= 7.0);
+        r.sources.iter_mut().for_each(|s| s.mended_by = Some(0));
+        r.findings.iter_mut().filter(|f| f.about == "mend").for_each(|f| f.text = "took longer".into());
+        r
+    };
+    let (fast, slow) = (page(record()), page(&slow));
+    assert_ne!(fast, slow);
+    assert_eq!(outside(&fast), outside(&slow));
+    assert!(outside(&fast).len() > fast.len() / 3, "most of the page is no clock");
+}
+
+#[test]
+fn progressive_refinement_and_foreign_matrices_are_named() {
+    let mut r = record().clone();
+    r.form = Form::Shooter;
+    assert!(page(&r).contains("Progressive refinement with a hemi-cube of resolution 20 at the shooter"));
+    assert!(!page(record()).contains("at the shooter"));
+    r.form = Form::Receiver;
+    r.theirs = Some("their<F>.csv".into());
+    let page = page(&r);
+    assert!(page.contains("Somebody else&#x27;s matrix") && page.contains("their&lt;F&gt;.csv"));
+}
+
+#[test]
+fn an_audit_without_limit_cures_and_curves_has_a_page() {
+    let mut r = record().clone();
+    (r.limit, r.verdict, r.rate, r.wrong.top1) = (None, None, None, None);
+    r.cures.clear();
+    r.resolutions.truncate(1);
+    r.rotations.clear();
+    r.sources.clear();
+    r.views.clear();
+    let page = page(&r);
+    assert!(page.contains("NO LIMIT") && !page.contains("<h2>Cures") && !page.contains("class=\"chart\""));
+}
+
+#[test]
+fn a_record_of_another_scene_is_refused() {
+    let mut r = record().clone();
+    r.receivers.pop();
+    let stage = stage();
+    let extras = AuditExtras { stage: &stage, views: &[], pictures: &[], timing: &[] };
+    assert!(matches!(audit_files(&r, &extras), Err(ReportError::Shape { what: "audit", .. })));
+}
