@@ -65,24 +65,28 @@ impl Table {
         self.faces[0] * sum(&self.top) + self.faces[1..].iter().sum::<f64>() * sum(&self.side)
     }
 
-    /// The same of a model's table, without making it where its pixels mirror each other.
+    /// The same of a model's table, without making it.
     pub fn total_of(n: u32, model: Model) -> f64 {
         let Model { rule, mistake } = model;
-        let is_plain = !matches!(mistake, Mistake::PixelCorner | Mistake::TopTableOnSides);
-        if rule != Rule::Midpoint || !is_plain || !n.is_multiple_of(2) {
+        if rule != Rule::Midpoint || mistake == Mistake::TopTableOnSides {
             return Self::new(n, model).total();
         }
         let coordinates = Coordinates::new(n as usize, mistake);
-        let (half, rows) = (n as usize / 2, rows(n as usize, mistake));
-        let across: Vec<f64> = (0..half).map(|k| coordinates.across(k)).collect();
-        let top = |a: usize, b: usize| coordinates.top(across[a], across[b]);
-        let off = summed((0..half).flat_map(|b| (b + 1..half).map(move |a| (a, b))).map(|(a, b)| top(a, b)));
-        let diagonal = summed((0..half).map(|a| top(a, a)));
-        let strips = (0..rows).map(|b| coordinates.up(b));
-        let side =
-            summed(strips.flat_map(|z| across.iter().map(move |y| (*y, z))).map(|(y, z)| coordinates.side(y, z)));
+        let across = mirrored((0..n as usize).map(|k| coordinates.across(k)).collect());
+        let pairs = (0..across.len()).flat_map(|b| (0..=b).map(move |a| (a, b)));
+        let top = summed(pairs.map(|(a, b)| {
+            let ((x, w), (y, v)) = (across[a], across[b]);
+            // (x, y) stands for (y, x) as well.
+            if a == b { w * v * coordinates.top(x, y) } else { 2.0 * w * v * coordinates.top(x, y) }
+        }));
+        let heights = (0..rows(n as usize, mistake)).map(|b| coordinates.up(b));
+        let side = summed(
+            heights
+                .flat_map(|z| across.iter().map(move |(y, w)| (*y, z, *w)))
+                .map(|(y, z, w)| w * coordinates.side(y, z)),
+        );
         let faces = mistake.faces();
-        faces[0] * (8.0 * off + 4.0 * diagonal) + faces[1..].iter().sum::<f64>() * 2.0 * side
+        faces[0] * top + faces[1..].iter().sum::<f64>() * side
     }
 
     /// The same with the hemi-cube turned by a quarter.
@@ -121,6 +125,14 @@ fn rows(n: usize, mistake: Mistake) -> usize {
         Mistake::OddRowOnHorizon => n.div_ceil(2),
         _ => n / 2,
     }
+}
+
+/// The different distances from the axis, each with how many there are.
+fn mirrored(mut across: Vec<f64>) -> Vec<(f64, f64)> {
+    across.iter_mut().for_each(|x| *x = x.abs());
+    across.sort_unstable_by(f64::total_cmp);
+    let alike = across.chunk_by(|a, b| b - a < 1e-9);
+    alike.map(|xs| (xs[0], xs.len() as f64)).collect()
 }
 
 fn summed(deltas: impl Iterator<Item = f64>) -> f64 {
