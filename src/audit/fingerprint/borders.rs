@@ -9,8 +9,17 @@ use std::collections::BTreeMap;
 /// precision, far less than what is seen of a pixel otherwise.
 const HAIR: f64 = 1.0 / (1u64 << 16) as f64;
 
-/// Looks to four sides of a centre, along no edge that is likely.
-const AROUND: [[f64; 2]; 4] = [[HAIR, 0.37 * HAIR], [-0.37 * HAIR, HAIR], [-HAIR, -0.37 * HAIR], [0.37 * HAIR, -HAIR]];
+/// Directions looked in from a centre: where corners meet, a patch fills a wedge only.
+const AROUND: usize = 12;
+
+/// Pictures it takes to find borders, with the one at the centres.
+pub(super) const BORDER_PICTURES: f64 = 1.0 + AROUND as f64;
+
+/// Looks around a centre, along no edge that is likely.
+fn around() -> impl Iterator<Item = [f64; 2]> {
+    let angle = |k: usize| (k as f64 + 0.37) * std::f64::consts::TAU / AROUND as f64;
+    (0..AROUND).map(angle).map(|a| [HAIR * a.cos(), HAIR * a.sin()])
+}
 
 /// The pixels of a hemi-cube that may show one thing or another: face, pixel, and what they show, first what our
 /// picture has.
@@ -21,7 +30,7 @@ impl Borders {
     /// Where a picture changes if looked at from a hair aside.
     pub fn new(picture: &[Vec<Item>; FACES], shifted: impl Fn([f64; 2]) -> Option<[Vec<Item>; FACES]>) -> Self {
         let mut found: BTreeMap<(usize, usize), Vec<Item>> = BTreeMap::new();
-        for other in AROUND.into_iter().filter_map(shifted) {
+        for other in around().filter_map(shifted) {
             for (face, (own, other)) in picture.iter().zip(&other).enumerate() {
                 for pixel in (0..own.len()).filter(|k| own[*k] != other[*k]) {
                     let items = found.entry((face, pixel)).or_insert_with(|| vec![own[pixel]]);

@@ -1,6 +1,7 @@
 //! From candidates to a conclusion: small entries looked up, rows drawn.
 
 use super::axes::Axes;
+use super::borders::BORDER_PICTURES;
 use super::candidates::Candidate;
 use super::lattice::Lattice;
 use super::model::{Mistake, Model, Rule};
@@ -78,11 +79,16 @@ impl Search<'_> {
         };
         let confirmed = |(found, axes, view): (Confirmed, Axes, usize)| {
             // What reproduces next to nothing will not reproduce more on more rows.
-            if 20 * found.entries < found.of || !work.take(5.0 * camera.cost(&sheet) * CONFIRMED_ROWS as f64) {
+            if 20 * found.entries < found.of
+                || !work.take(BORDER_PICTURES * camera.cost(&sheet) * CONFIRMED_ROWS as f64)
+            {
                 return (found, axes);
             }
-            let one = sheet.only(view);
-            let of = |row: &usize| camera.compare(self.f, &[*row], axes, &one, &slack, true)[0];
+            let model = sheet.views[view].model;
+            let one = sheet.only(model);
+            // Axes that are alike but for quarter turns may differ by one from patch to patch.
+            let best = |all: Vec<Confirmed>| all.into_iter().max_by_key(|c| (c.entries, c.by_borders));
+            let of = |row: &usize| best(camera.compare(self.f, &[*row], axes, &one, &slack, true)).unwrap_or_default();
             let rows: Vec<Confirmed> = self.rows[..self.rows.len().min(CONFIRMED_ROWS)].par_iter().map(of).collect();
             (rows.into_iter().sum(), axes)
         };

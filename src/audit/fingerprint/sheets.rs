@@ -55,11 +55,10 @@ impl Sheet {
         self.views.push(View { model, table: at, faces: table.faces });
     }
 
-    /// One view by itself.
-    pub fn only(&self, view: usize) -> Self {
-        let View { model, table, faces } = self.views[view];
-        let (tables, made) = (vec![self.tables[table].clone()], vec![self.made[table]]);
-        Self { tables, made, views: vec![View { model, table: 0, faces }] }
+    /// One model by itself.
+    pub fn only(&self, model: usize) -> Self {
+        let views = self.views.iter().filter(|v| v.model == model).copied().collect();
+        Self { tables: self.tables.clone(), made: self.made.clone(), views }
     }
 
     /// Sums of a picture.
