@@ -2,10 +2,13 @@
 """Hemi-cube form factors by one ray per pixel: an independent maker of matrices to be fingerprinted.
 
     python3 third_party.py SCENE.toml OUT.npz --resolution 50 [--rule midpoint|exact|normalised] [--mistake NAME]
-                           [--axes world|random] [--single]
+                           [--axes world|diagonal|random] [--single]
 
-Written from Cohen & Greenberg 1985 alone: no rasteriser, no clipping, no depth buffer. Reads polygons of four
-corners with their `patches` from a scene file; needs numpy and scipy. `all` in place of OUT writes the stored set.
+Shares no code with the project it tests, and no way of working where that matters: rays in place of projection,
+clipping, scan conversion and depth buffer; axes and ties of its own. What it cannot differ in are the formulas of the
+deltas, which are those published in 1985, and their antiderivatives; and it was written by people who knew the program
+under test. Reads polygons of four corners with their `patches` from a scene file; needs numpy and scipy. `all` in
+place of OUT writes the stored set.
 """
 import argparse
 import tomllib
@@ -63,13 +66,13 @@ def tables(n, rule, mistake):
 
 
 def frame(normal, axes, rng):
-    """Two directions across the normal: from the world axis least along it, or turned by chance."""
+    """Two directions across the normal: from the world axis least along it, turned by 45 degrees or by chance."""
     least = np.eye(3)[np.argmin(np.abs(normal))]
     u = np.cross(least, normal)
     u /= np.linalg.norm(u)
     v = np.cross(normal, u)
-    if axes == "random":
-        t = rng.uniform(0, 2 * np.pi)
+    if axes != "world":
+        t = np.pi / 4 if axes == "diagonal" else rng.uniform(0, 2 * np.pi)
         u, v = np.cos(t) * u + np.sin(t) * v, np.cos(t) * v - np.sin(t) * u
     return u, v
 
@@ -110,13 +113,14 @@ def matrix(patches, n, rule="midpoint", mistake="none", axes="world", seed=1):
 
 
 STORED = [(32, "midpoint", "none", "world"), (50, "midpoint", "none", "world"), (100, "midpoint", "none", "world"),
-          (128, "midpoint", "none", "world"), (64, "exact", "none", "world"), (80, "normalised", "none", "world"),
-          (100, "midpoint", "none", "random"), (50, "midpoint", "missing-side", "world"),
-          (100, "exact", "missing-side", "world"), (64, "midpoint", "missing-top", "world"),
-          (50, "midpoint", "side-without-z", "world"), (64, "midpoint", "half-pixel", "world"),
-          (40, "midpoint", "exponent-one", "world"), (32, "midpoint", "pixel-corner", "world"),
-          (32, "midpoint", "top-table-on-sides", "world"), (50, "midpoint", "sides-upside-down", "world"),
-          (48, "exact", "none", "random")]
+          (128, "midpoint", "none", "world"), (50, "midpoint", "none", "diagonal"), (64, "exact", "none", "world"),
+          (64, "exact", "none", "diagonal"), (80, "normalised", "none", "diagonal"), (51, "midpoint", "none", "world"),
+          (100, "midpoint", "none", "random"), (48, "exact", "none", "random"),
+          (50, "midpoint", "missing-side", "world"), (100, "exact", "missing-side", "diagonal"),
+          (64, "midpoint", "missing-top", "world"), (50, "midpoint", "side-without-z", "diagonal"),
+          (64, "midpoint", "half-pixel", "world"), (40, "midpoint", "exponent-one", "diagonal"),
+          (32, "midpoint", "pixel-corner", "diagonal"), (32, "midpoint", "top-table-on-sides", "world"),
+          (50, "midpoint", "sides-upside-down", "world")]
 
 if __name__ == "__main__":
     a = argparse.ArgumentParser()
@@ -125,7 +129,7 @@ if __name__ == "__main__":
     a.add_argument("--resolution", type=int, default=50)
     a.add_argument("--rule", default="midpoint", choices=["midpoint", "exact", "normalised"])
     a.add_argument("--mistake", default="none", choices=MISTAKES)
-    a.add_argument("--axes", default="world", choices=["world", "random"])
+    a.add_argument("--axes", default="world", choices=["world", "diagonal", "random"])
     a.add_argument("--single", action="store_true", help="store single-precision values")
     a = a.parse_args()
     with open(a.scene, "rb") as file:

@@ -4,21 +4,30 @@
 //! and small entries that are one delta of a table or two. What they suggest is then drawn with our own hemi-cube,
 //! turned in the ways people turn theirs, and held against rows entry by entry.
 
+mod axes;
+mod borders;
 mod candidates;
 mod clues;
+mod judge;
 mod lattice;
+mod model;
 mod pictures;
+mod search;
+mod sheets;
 mod tables;
+mod totals;
 mod words;
 
 use crate::scene::Stage;
 use crate::solution::FormFactors;
-use candidates::Search;
+pub use axes::{Axes, Axis};
+pub use candidates::Candidate;
 pub use clues::{Digits, RowSums};
 pub use lattice::Lattice;
-pub use pictures::{Axes, Axis, Confirmed};
+pub use model::{Mistake, Model, Rule};
+pub use pictures::Confirmed;
+use search::{Found, Search};
 use serde::Serialize;
-pub use tables::{Mistake, Model, Rule};
 
 /// What a matrix looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -38,23 +47,6 @@ pub enum Likeness {
     CannotBeTold,
 }
 
-/// A hemi-cube that fits a clue.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Candidate {
-    /// How its table is made.
-    pub model: Model,
-    /// Resolutions that fit: the lowest and the highest.
-    pub resolutions: [u32; 2],
-    /// True if its total is the sum that the rows share.
-    pub by_row_sum: bool,
-    /// Small entries against its table, where it has one resolution.
-    pub lattice: Option<Lattice>,
-    /// Entries reproduced by our pixels, best turn.
-    pub confirmed: Option<Confirmed>,
-    /// That turn.
-    pub axes: Option<Axes>,
-}
-
 /// What can be told of a matrix.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fingerprint {
@@ -70,6 +62,8 @@ pub struct Fingerprint {
     pub axes: Option<Axes>,
     /// Entries reproduced; `None` where nothing was drawn.
     pub confirmed: Option<Confirmed>,
+    /// Where neither row sums nor small entries name a resolution: all those up to this one were drawn.
+    pub drawn_to: Option<u32>,
     /// What rows sum to.
     pub row_sums: RowSums,
     /// The smallest entry above zero; `None` for an empty matrix.
@@ -85,24 +79,25 @@ pub struct Fingerprint {
 /// Tells what can be told of a matrix of this scene.
 ///
 /// Draws up to 24 hemi-cubes per candidate; where neither row sums nor small entries say a resolution, those up to
-/// 256 are drawn for one row.
+/// 256 are drawn for one row, fewer in a scene of very many patches: drawing ends after about 1.5e9 pixels.
 pub fn fingerprint(stage: &Stage, matrix: &FormFactors) -> Fingerprint {
     let search = Search::new(stage, matrix);
+    let nothing = || Found { candidates: Vec::new(), drawn_to: None };
     let rays = clues::rays(&search.entries, search.digits);
     // Decimal places and counts of a power of ten are the same numbers.
     let decimal = matches!(search.digits, Digits::Places(_));
     if let Some(rays) = rays.filter(|_| !decimal) {
-        return search.conclude(Likeness::RayCounts { rays }, Vec::new());
+        return search.conclude(Likeness::RayCounts { rays }, nothing());
     }
     // Where rounding hides pixels, any good matrix is "reproduced".
     if search.row_sums.rows < 3 || search.entries.len() < 8 || search.is_coarse() {
-        return search.conclude(Likeness::CannotBeTold, Vec::new());
+        return search.conclude(Likeness::CannotBeTold, nothing());
     }
-    let candidates = search.run();
-    let likeness = match candidates.first() {
+    let found = search.run();
+    let likeness = match found.candidates.first() {
         Some(best) if best.is_sure(&search.row_sums) => Likeness::Hemicube,
         None if decimal => Likeness::CannotBeTold,
         _ => Likeness::NoSignOfHemicube,
     };
-    search.conclude(likeness, candidates)
+    search.conclude(likeness, found)
 }

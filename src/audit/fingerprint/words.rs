@@ -1,6 +1,6 @@
 //! A fingerprint in words.
 
-use super::{Candidate, Digits, Fingerprint, Likeness, Mistake, Rule};
+use super::{Candidate, Confirmed, Digits, Fingerprint, Likeness, Mistake, Rule};
 use std::fmt;
 
 impl fmt::Display for Rule {
@@ -33,6 +33,8 @@ impl fmt::Display for Mistake {
             Self::SidesUpsideDown => "the rows of the sides are upside down",
             Self::TallSides => "the sides are N pixels high in place of N/2",
             Self::SquashedSides => "the sides have N rows but the pixel area of N/2",
+            Self::OddRowLost => "N is odd and half a row at the top of the sides is lost",
+            Self::OddRowOnHorizon => "N is odd and the lowest row of the sides lies on the horizon",
         })
     }
 }
@@ -127,19 +129,29 @@ fn small_entries(best: &Candidate) -> Option<String> {
 fn confirmation(best: &Candidate) -> String {
     match (best.confirmed, best.axes) {
         (Some(c), Some(_)) => format!(
-            "Our pixels with that table reproduce {} of {} entries ({:.1} %) in {} rows, {} rows in full.",
+            "Our pixels with that table reproduce {} of {} entries ({:.1} %) in {} rows, {} rows in full{}.",
             c.entries,
             c.of,
             100.0 * c.share(),
             c.rows,
-            c.whole_rows
+            c.whole_rows,
+            others(&c)
         ),
         (Some(c), None) => format!(
             "Our pixels reproduce {} of {} entries only: their hemi-cubes are turned, or stand, in a way not tried \
              here.",
             c.entries, c.of
         ),
-        _ => "Pixels were not drawn: the mistake has no pixels of ours.".to_string(),
+        _ => "Pixels were not drawn: ours are not like these, too many, or the resolution is open.".to_string(),
+    }
+}
+
+/// What is not reproduced.
+fn others(c: &Confirmed) -> String {
+    match (c.by_borders, c.of - c.entries - c.by_borders) {
+        (0, _) => String::new(),
+        (by, 0) => format!("; pixels whose centre lies on a border explain the other {by}"),
+        (by, left) => format!("; pixels whose centre lies on a border explain {by} more, {left} are left"),
     }
 }
 
@@ -154,11 +166,13 @@ fn unsettled(print: &Fingerprint) -> Option<String> {
              digits.",
             print.digits
         )),
-        Likeness::NoSignOfHemicube if print.row_sums.common.is_some() => Some(
-            "A hemi-cube whose table sums to 1, turned in a way not tried here and without small entries, would look \
-             the same."
-                .to_string(),
-        ),
+        Likeness::NoSignOfHemicube => {
+            let drawn = print.drawn_to.map(|n| format!("Resolutions up to {n} were drawn. ")).unwrap_or_default();
+            Some(format!(
+                "{drawn}A hemi-cube of another resolution, or turned in a way not tried here, that leaves neither row \
+                 sums nor small entries to go by would look the same."
+            ))
+        }
         Likeness::Hemicube if print.resolution.is_none() || print.rule.is_none() || print.mistake.is_none() => {
             let named = |c: &Candidate| {
                 let [low, high] = c.resolutions;
