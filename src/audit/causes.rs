@@ -250,7 +250,7 @@ impl Split {
     }
 
     /// The same pairs as progressive refinement uses them: the hemi-cube stands at the shooter j, and reciprocity
-    /// brings `F_ij = F_ji A_j / A_i` to the receivers [GSG90 eq. 2].
+    /// brings `F_ij = F_ji A_j / A_i` to the receivers.
     pub fn from_shooters(&self, stage: &Stage) -> Self {
         let mut rows: Vec<Vec<(u32, Pair)>> = vec![Vec::new(); self.len()];
         for shooter in 0..self.len() {

@@ -73,13 +73,16 @@ pub struct Seen {
 }
 
 /// All receivers before a source: patches `source`, radiosities through `unit`, the luminance that one unit of form
-/// factor to patch j brings to patch i. `resolution` of the hemi-cubes, which stand as `stands` says.
+/// factor to patch j brings to patch i. `resolution` of the hemi-cubes, which stand as `stands` says: at the receivers,
+/// or (`at_source`) at the patches of the source, where pixels are what the receiver covers of theirs.
+#[allow(clippy::too_many_arguments)] // A struct of its own would be made once and taken apart at once.
 pub fn views(
     stage: &Stage,
     split: &Split,
     stands: &[Option<(DVec3, Frame)>],
     source: &[u32],
     resolution: u32,
+    at_source: bool,
     unit: &dyn Fn(usize, usize) -> f64,
 ) -> Vec<View> {
     let middle = middle(stage, source);
@@ -88,19 +91,28 @@ pub fn views(
         let Some((eye, frame)) = stand else { continue };
         let (mut cube, mut point, mut mean, mut variance, mut light) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let mut parts = [0.0f64; 3];
+        let mut pixels = [0.0; 2];
         for (j, p) in source.iter().filter_map(|j| Some((*j as usize, split.get(i, *j as usize)?))) {
             cube += p.cube;
             point += p.point;
             mean += p.mean;
             variance += p.mean_error * p.mean_error;
+            let delta = match &stands[j] {
+                Some((from, frame)) if at_source => {
+                    let turned = stage.patches[j].area / stage.patches[i].area;
+                    delta_towards(frame, *eye - *from, resolution) * turned
+                }
+                _ => delta_towards(frame, middle - *eye, resolution),
+            };
+            if delta > 0.0 {
+                pixels = [pixels[0] + p.point / delta, pixels[1] + p.cube / delta];
+            }
             light += unit(i, j) * p.error();
             Cause::ALL.iter().zip(&mut parts).for_each(|(c, part)| *part += unit(i, j) * p.part(*c));
         }
         if cube == 0.0 && point == 0.0 && mean == 0.0 {
             continue;
         }
-        let delta = delta_towards(frame, middle - *eye, resolution);
-        let pixels = |f: f64| if delta > 0.0 { f / delta } else { 0.0 };
         out.push(View {
             patch: i as u32,
             surface: stage.surfaces[stage.patches[i].surface as usize].name.clone(),
@@ -110,8 +122,8 @@ pub fn views(
             mean,
             mean_error: variance.sqrt(),
             main_cause: Cause::largest(&parts.map(f64::abs)),
-            pixels: pixels(point),
-            counted: pixels(cube),
+            pixels: pixels[0],
+            counted: pixels[1],
             luminance_error: light,
             share: 0.0,
         });

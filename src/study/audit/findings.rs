@@ -117,12 +117,9 @@ fn of_source(record: &AuditRecord, s: &SourceAudit) -> Finding {
         seen.distance[2]
     );
     let pixels = |x: f64| if x < 10.0 { format!("{x:.2}") } else { format!("{x:.0}") };
-    text += &format!(
-        ", where it covers {} to {} pixels (half of them below {})",
-        pixels(least),
-        pixels(most),
-        pixels(middle)
-    );
+    let who = if record.form == Form::Shooter { "they cover" } else { "it covers" };
+    text +=
+        &format!(", where {who} {} to {} pixels (half of them below {})", pixels(least), pixels(most), pixels(middle));
     if seen.missed + seen.doubled + seen.less_than_half > 0 {
         text += &format!(
             "; {} miss it altogether, {} count less than half of it, {} count it double or more",

@@ -360,7 +360,8 @@ impl Auditor<'_> {
 
     fn views(&self, context: &Context, source: &[u32], resolution: u32) -> Vec<View> {
         let unit = self.unit(context);
-        views(self.stage, context.split, &self.stands, source, resolution, &unit)
+        let at_source = self.request.form == Form::Shooter;
+        views(self.stage, context.split, &self.stands, source, resolution, at_source, &unit)
     }
 
     /// The sources asked for, or those that bring the largest errors.
