@@ -75,7 +75,6 @@ pub struct Seen {
 /// All receivers before a source: patches `source`, radiosities through `unit`, the luminance that one unit of form
 /// factor to patch j brings to patch i. `resolution` of the hemi-cubes, which stand as `stands` says: at the receivers,
 /// or (`at_source`) at the patches of the source, where pixels are what the receiver covers of theirs.
-#[allow(clippy::too_many_arguments)] // A struct of its own would be made once and taken apart at once.
 pub fn views(
     stage: &Stage,
     split: &Split,
