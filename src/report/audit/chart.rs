@@ -82,9 +82,7 @@ impl Placed {
     fn place(&self, x: f64) -> f64 {
         match self {
             Self::Log(axis, _) => axis.place(x.max(axis.low)),
-            Self::Linear { low, high, from, to, .. } => {
-                from + (to - from) * ((x - low) / (high - low)).clamp(0.0, 1.0)
-            }
+            Self::Linear { low, high, from, to, .. } => from + (to - from) * ((x - low) / (high - low)).clamp(0.0, 1.0),
         }
     }
 
@@ -143,8 +141,7 @@ impl Chart {
             let class = if label.is_some() { "mark" } else { "mark faint" };
             let _ = writeln!(out, "<path class=\"{class}\" d=\"M{LEFT} {at:.1}H{right}\"/>");
             if let Some(label) = label {
-                let _ =
-                    writeln!(out, "<text class=\"e\" x=\"{:.1}\" y=\"{:.1}\">{label}</text>", LEFT - 8.0, at + 4.5);
+                let _ = writeln!(out, "<text class=\"e\" x=\"{:.1}\" y=\"{:.1}\">{label}</text>", LEFT - 8.0, at + 4.5);
             }
         }
         for (value, name) in &self.rules {
@@ -230,8 +227,7 @@ fn draw(series: &Series, x: &Placed, y: &Placed, out: &mut String) {
     if series.dots.len() > CROWD {
         let halves = |d: &Dot| ((2.0 * at(d).0).round() as i64, (2.0 * at(d).1).round() as i64);
         let places: BTreeSet<(i64, i64)> = series.dots.iter().map(halves).collect();
-        let path: String =
-            places.iter().map(|(a, b)| format!("M{} {}h0", 0.5 * *a as f64, 0.5 * *b as f64)).collect();
+        let path: String = places.iter().map(|(a, b)| format!("M{} {}h0", 0.5 * *a as f64, 0.5 * *b as f64)).collect();
         let _ = writeln!(out, "<path class=\"crowd\" d=\"{path}\"/>");
     } else {
         for d in &series.dots {

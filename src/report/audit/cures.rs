@@ -112,8 +112,9 @@ fn chart(record: &AuditRecord) -> Option<ChartBlock> {
         series: vec![series("k1", of(true).collect()), series("k0", of(false).collect())],
         rules: record.limit.map(|l| (l, format!("limit {}", percent_exact(l)))).into_iter().collect(),
     };
-    let caption = "Every dot is a run of the mended solver, judged like the hemi-cube itself; bars are the intervals. Lower \
+    let caption =
+        "Every dot is a run of the mended solver, judged like the hemi-cube itself; bars are the intervals. Lower \
                    is better, further left is cheaper."
-        .into();
+            .into();
     Some(ChartBlock { id: "cures", title: chart.name.clone(), caption, svg: chart.svg()?, legend: Vec::new() })
 }

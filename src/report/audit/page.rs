@@ -160,7 +160,11 @@ impl<'a> Page<'a> {
             pictures: extras.pictures.iter().map(|p| (p.name.as_str(), minus(&p.caption))).collect(),
             read: CAUSES.to_vec(),
             settings: settings(record),
-            timing: extras.timing.iter().map(|p| (p.name.as_str(), format!("{} s", significant(p.seconds, 3)))).collect(),
+            timing: extras
+                .timing
+                .iter()
+                .map(|p| (p.name.as_str(), format!("{} s", significant(p.seconds, 3))))
+                .collect(),
             program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
         }
     }
@@ -168,8 +172,7 @@ impl<'a> Page<'a> {
 
 /// What would mend it: everything first, then source by source.
 fn mends(record: &AuditRecord) -> Vec<String> {
-    let mut all: Vec<String> =
-        record.findings.iter().filter(|f| f.about == "mend").map(|f| minus(&f.text)).collect();
+    let mut all: Vec<String> = record.findings.iter().filter(|f| f.about == "mend").map(|f| minus(&f.text)).collect();
     // The study tells of the whole last.
     let of_the_whole = usize::from(!all.is_empty());
     all.rotate_right(of_the_whole);
@@ -222,7 +225,8 @@ fn notes(record: &AuditRecord) -> Vec<(&'static str, String)> {
     let mut notes = Vec::new();
     if let Some(file) = &record.theirs {
         let told = record.fingerprint.as_ref().map_or(String::new(), |f| format!(" Its fingerprint: {f}."));
-        let own = "Charts and cures are by our own hemi-cube with the settings below, not by the program that wrote it.";
+        let own =
+            "Charts and cures are by our own hemi-cube with the settings below, not by the program that wrote it.";
         notes.push(("Somebody else's matrix", minus(&format!("The form factors are those of {file}.{told} {own}"))));
     }
     if record.form == Form::Shooter {
@@ -263,8 +267,11 @@ fn causes(record: &AuditRecord) -> Vec<CauseRow> {
     let cause = |k: usize| CauseRow {
         class: format!("c{k}"),
         name: CAUSES[k].0,
-        meaning: ["pixels stand for areas", "centres stand for patches", "sight from centres stands for that of patches"]
-            [k],
+        meaning: [
+            "pixels stand for areas",
+            "centres stand for patches",
+            "sight from centres stands for that of patches",
+        ][k],
         alone: minus(&percent(record.alone[k])),
         length: length(record.alone[k]),
         left: number(record.without[k].rms.as_ref()),
@@ -286,11 +293,8 @@ fn causes(record: &AuditRecord) -> Vec<CauseRow> {
 fn cause_notes(record: &AuditRecord) -> String {
     let infinite = number(record.infinite.rms.as_ref());
     let more = record.without.iter().filter_map(|w| w.rms).any(|e| record.wrong.rms.is_some_and(|w| e.value > w.value));
-    let cancels = if more {
-        " Where more is left than there was, that cause makes up for part of another."
-    } else {
-        ""
-    };
+    let cancels =
+        if more { " Where more is left than there was, that cause makes up for part of another." } else { "" };
     minus(&format!(
         "A hemi-cube of infinite resolution, without any aliasing, would leave {}{}. The truth's own noise in the form \
          factors is {}.{cancels}",

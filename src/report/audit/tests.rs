@@ -98,7 +98,8 @@ fn the_page_holds_verdict_numbers_causes_sources_and_cures() {
     for text in record.findings.iter().map(|f| &f.text).chain(record.cures.iter().map(|c| &c.words)) {
         assert!(page.contains(&shown(text)), "{text}");
     }
-    let parts = ["By cause", "By source", "Worst receivers of", "Cures", "Error against cost", "Error against resolution"];
+    let parts =
+        ["By cause", "By source", "Worst receivers of", "Cures", "Error against cost", "Error against resolution"];
     let more = ["Counted over exact", "Error under rotation", "Where it is wrong", "What the hemi-cube saw"];
     for part in parts.iter().chain(&more).chain(&["Aliasing", "Proximity", "Visibility", "How it was made"]) {
         assert!(page.contains(part), "{part}");
@@ -137,7 +138,8 @@ fn the_page_is_well_formed() {
         }
         let end = begin + page[begin..].find('>').expect("an end of the tag");
         let tag = &page[begin + 1..end];
-        let name: String = tag.trim_start_matches('/').chars().take_while(|c| !c.is_whitespace() && *c != '/').collect();
+        let name: String =
+            tag.trim_start_matches('/').chars().take_while(|c| !c.is_whitespace() && *c != '/').collect();
         if tag.starts_with('/') {
             assert_eq!(open.pop().as_deref(), Some(name.as_str()), "at {}", &page[begin.saturating_sub(200)..end]);
         } else if !tag.ends_with('/') && !void.contains(&name.as_str()) {
