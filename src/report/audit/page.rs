@@ -63,6 +63,8 @@ pub(super) struct Page<'a> {
     notes: Vec<(&'static str, String)>,
     facts: Vec<(&'static str, String)>,
     mends: Vec<String>,
+    /// `pass` where a cure passes, `open` where none does, `none` without a limit.
+    mend_class: &'static str,
     findings: Vec<FindingRow>,
     confidence: String,
     causes: Vec<CauseRow>,
@@ -126,7 +128,6 @@ pub(super) fn chip(verdict: Option<Verdict>) -> &'static str {
 
 impl<'a> Page<'a> {
     pub(super) fn new(record: &'a AuditRecord, extras: &'a AuditExtras, views: &'a [MapView]) -> Self {
-        let is_mend = |f: &&Finding| f.about == "mend";
         let word = match record.verdict {
             Some(Verdict::Pass) => "PASS",
             Some(Verdict::Fail) => "FAIL",
@@ -144,9 +145,9 @@ impl<'a> Page<'a> {
             warnings: record.self_check_failures.clone(),
             notes: notes(record),
             facts: facts(record),
-            // What mends everything leads.
-            mends: record.findings.iter().rev().filter(is_mend).map(|f| minus(&f.text)).collect(),
-            findings: record.findings.iter().filter(|f| !is_mend(f)).map(found).collect(),
+            mends: mends(record),
+            mend_class: mend_class(record),
+            findings: record.findings.iter().filter(|f| f.about != "mend").map(found).collect(),
             confidence: confidence(record.confidence),
             causes: causes(record),
             cause_notes: cause_notes(record),
@@ -166,6 +167,23 @@ impl<'a> Page<'a> {
                 .collect(),
             program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
         }
+    }
+}
+
+/// What would mend it: everything first, then source by source.
+fn mends(record: &AuditRecord) -> Vec<String> {
+    let mut all: Vec<String> = record.findings.iter().filter(|f| f.about == "mend").map(|f| minus(&f.text)).collect();
+    // The study tells of the whole last.
+    let of_the_whole = usize::from(!all.is_empty());
+    all.rotate_right(of_the_whole);
+    all
+}
+
+fn mend_class(record: &AuditRecord) -> &'static str {
+    match record.limit {
+        None => "none",
+        Some(_) if record.cures.iter().any(|c| c.verdict == Some(Verdict::Pass)) => "pass",
+        Some(_) => "open",
     }
 }
 
