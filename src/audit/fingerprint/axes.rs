@@ -67,20 +67,18 @@ impl Axes {
         if self.diagonal { frame.turned(std::f64::consts::FRAC_PI_4) } else { frame }
     }
 
+    /// For each of [`Axes::all`] the number of the first that turns the hemi-cube of a patch alike.
+    pub(super) fn classes(patch: &Patch) -> Vec<usize> {
+        let frames: Vec<Frame> = Self::all().map(|axes| axes.frame(patch)).collect();
+        let alike = |a: &Frame, b: &Frame| a.x.dot(b.x).abs().max(a.x.dot(b.y).abs()) > 1.0 - 1e-9;
+        let first = |k: usize| frames[..k].iter().position(|f| alike(&frames[k], f)).unwrap_or(k);
+        (0..frames.len()).map(first).collect()
+    }
+
     /// Axes that turn the hemi-cube of a patch differently, the first of each kind.
     pub(super) fn different(patch: &Patch) -> Vec<Self> {
-        let mut kept: Vec<(Self, Frame)> = Vec::new();
-        for axes in Self::all() {
-            let frame = axes.frame(patch);
-            let alike = |other: &Frame| {
-                let cos = frame.x.dot(other.x).abs();
-                cos.max(frame.x.dot(other.y).abs()) > 1.0 - 1e-9
-            };
-            if !kept.iter().any(|(_, other)| alike(other)) {
-                kept.push((axes, frame));
-            }
-        }
-        kept.into_iter().map(|(axes, _)| axes).collect()
+        let classes = Self::classes(patch);
+        Self::all().enumerate().filter(|(k, _)| classes[*k] == *k).map(|(_, axes)| axes).collect()
     }
 }
 

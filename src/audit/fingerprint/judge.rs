@@ -11,8 +11,9 @@ use super::sheets::Sheet;
 use super::tables::Table;
 use super::{Fingerprint, Likeness, words};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
-/// Rows that tell how the hemi-cubes are turned.
+/// Rows that tell how the hemi-cubes are turned, at least; more where these do not tell all axes apart.
 const TRIAL_ROWS: usize = 2;
 /// Resolutions that fit a clue alike beyond which none of them is looked into.
 const MOST_ALIKE: u32 = 64;
@@ -51,6 +52,22 @@ impl Search<'_> {
         if low == high { told.into_iter().collect() } else { vec![candidate] }
     }
 
+    /// The first rows, and those that tell axes apart which the rows before do not.
+    fn trial_rows(&self) -> Vec<usize> {
+        let distinct = |all: &[Vec<usize>]| all.iter().collect::<BTreeSet<_>>().len();
+        let (mut chosen, mut known) = (Vec::new(), vec![Vec::new(); Axes::all().count()]);
+        for row in &self.rows {
+            let mut longer = known.clone();
+            let classes = Axes::classes(&self.stage.patches[*row]);
+            longer.iter_mut().zip(classes).for_each(|(list, class)| list.push(class));
+            if chosen.len() < TRIAL_ROWS || distinct(&longer) > distinct(&known) {
+                chosen.push(*row);
+                known = longer;
+            }
+        }
+        chosen
+    }
+
     /// Draws models at a resolution: for each the turn that reproduces most, on all chosen rows. `None` where it
     /// cannot be drawn or would be too much work.
     fn drawn(&self, n: u32, models: &[Model], work: &mut Work) -> Option<Vec<(Confirmed, Axes)>> {
@@ -59,12 +76,12 @@ impl Search<'_> {
         }
         let (camera, sheet) = (Camera::new(self.stage, &self.world, n), Sheet::new(n, models));
         let all: Vec<Axes> = Axes::all().collect();
-        let trial = &self.rows[..self.rows.len().min(TRIAL_ROWS)];
+        let trial = self.trial_rows();
         if !work.take(camera.cost(&sheet) * (all.len() * trial.len()) as f64) {
             return None;
         }
         let slack = |v| self.slack(v);
-        let of = |axes: &Axes| camera.compare(self.f, trial, *axes, &sheet, &slack, false);
+        let of = |axes: &Axes| camera.compare(self.f, &trial, *axes, &sheet, &slack, false);
         let tried: Vec<Vec<Confirmed>> = all.par_iter().map(of).collect();
         let judge = |model: usize| {
             let mut best = (Confirmed::default(), all[0], 0);
