@@ -79,7 +79,11 @@ fn row(s: &SourceAudit, record: &AuditRecord, longest: f64) -> SourceRow {
         half: count(seen.less_than_half),
         doubled: count(seen.doubled),
         by_pixels: s.resolution_by_pixels.map(|r| count(r as usize)),
-        mended_by: s.mended_by.and_then(|k| record.cures.get(k)).map(|c| c.words.clone()),
+        mended_by: if record.limit.is_some_and(|l| s.source.error <= l) {
+            Some("needs none: within the limit".into())
+        } else {
+            s.mended_by.and_then(|k| record.cures.get(k)).map(|c| c.words.clone())
+        },
         worst: seen.worst.iter().enumerate().map(|(k, v)| worst(k, v, record.form)).collect(),
         beats: seen.beats.iter().map(|b| beat(b)).collect(),
     }

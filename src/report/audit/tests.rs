@@ -4,7 +4,7 @@ use super::*;
 use crate::io::scene::builtin;
 use crate::raycast::KernelKind;
 use crate::reference::{Options, Progress};
-use crate::render::views;
+use crate::render::{Visibility, fit_camera};
 use crate::report::format::percent_estimate;
 use crate::report::html::context::minus;
 use crate::study::Session;
@@ -48,10 +48,18 @@ fn record() -> &'static AuditRecord {
     })
 }
 
+/// Few pixels: the tests look at what is painted, not at how well.
+fn small_view(stage: &Stage) -> View {
+    let session = Session::open(stage, KernelKind::Builtin).expect("a kernel");
+    let tracer = session.tracer();
+    let mut camera = fit_camera(&tracer);
+    camera.size = [64, 48];
+    View { visibility: Visibility::cast(&tracer, &camera, 1), fitted: true }
+}
+
 fn files(record: &AuditRecord) -> Vec<Artifact> {
     let stage = stage();
-    let session = Session::open(&stage, KernelKind::Builtin).expect("a kernel");
-    let views = views(&session.tracer());
+    let views = [small_view(&stage)];
     let image = Raster { width: 2, height: 1, rgba: vec![255; 8] };
     let pictures = [AuditPicture { name: "unfolded-1.png".into(), caption: "patch 1 <b> of -2 %".into(), image }];
     let timing = [Phase { name: "audit".into(), seconds: 1.25 }];
