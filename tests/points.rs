@@ -43,7 +43,7 @@ fn known_values_past_plates() {
         let obstacles: Vec<Obstacle> = plates.into_iter().map(Obstacle::new).collect();
         let target = square(0.5, 1.0);
         let screen = Screen::new(&target);
-        let eye = Eye::new(DVec3::ZERO, DVec3::Z, &obstacles, None, 1.5);
+        let mut eye = Eye::new(DVec3::ZERO, DVec3::Z, &obstacles, None, 1.5);
         let open = point_to_polygon(DVec3::ZERO, DVec3::Z, &target);
         let seen = eye.onto(&screen, None).map_or(0.0, |mut view| view.factors(&target).1);
         assert!((open - 0.239_456_470_5).abs() < 1e-10, "{name}: {open}");

@@ -58,7 +58,7 @@ impl<'a> PointSight<'a> {
         // What has rounded corners may reach before its own plane: neither the body that the point stands on hides
         // anything, nor the one that is looked at.
         let body = |facet: usize| self.of_facet.get(facet).copied().flatten();
-        let eye = Eye::new(point, normal, &self.obstacles, body(facet as usize), self.extent);
+        let mut eye = Eye::new(point, normal, &self.obstacles, body(facet as usize), self.extent);
         let mut row = Vec::new();
         for (side, screen) in self.sides.iter().filter(|(s, _)| s.patches.iter().any(|j| wanted(*j))) {
             let Some(mut view) = eye.onto(screen, body(side.facet)) else { continue };

@@ -101,13 +101,14 @@ impl<'a> Eye<'a> {
     }
 
     /// The view onto a screen; `None` where nothing of it is seen. `own`: the body the screen is part of.
-    pub fn onto<'s>(&self, screen: &'s Screen, own: Option<u32>) -> Option<PointView<'s>> {
+    pub fn onto<'s>(&mut self, screen: &'s Screen, own: Option<u32>) -> Option<PointView<'s>> {
         let whole = facing_point(self.point, self.normal, &screen.polygon)?;
         let whole: Vec<DVec2> = whole.iter().map(|p| screen.place(*p)).collect();
         let mut scratch = Scratch::default();
-        for cone in self.cones.iter().filter(|c| own != Some(c.number)) {
-            let Some(shadow) = self.shadow(cone, screen, &whole) else { continue };
-            match lies(&whole, &shadow) {
+        let (point, extent) = (self.point, self.extent);
+        for cone in self.cones.iter_mut().filter(|c| own != Some(c.number)) {
+            let Some(mut shadow) = cone.shadow(point, extent, screen, &whole) else { continue };
+            match lies(&whole, &mut shadow) {
                 Shadow::Misses => {}
                 Shadow::Hides => return None,
                 Shadow::Cuts => scratch.shadows.push(shadow),
@@ -119,24 +120,27 @@ impl<'a> Eye<'a> {
         let x = screen.place(self.point).extend(screen.plane.height(self.point));
         Some(PointView { screen, x, normal, scratch, polygon: Vec::new(), point: self.point, horizon: n })
     }
+}
 
-    /// The shadow of a body on a screen, as far as it stands before it.
-    fn shadow(&self, cone: &Cone, screen: &Screen, whole: &[DVec2]) -> Option<Vec<HalfPlane>> {
-        let mut out = Vec::with_capacity(cone.normals.len());
-        for n in &cone.normals {
-            let h = screen.half_plane(self.point, *n);
-            // Most bodies stand aside: the first plane with the screen on its far side tells.
+impl Cone<'_> {
+    /// The shadow of the body on a screen, as far as it stands before it.
+    fn shadow(&mut self, point: DVec3, extent: f64, screen: &Screen, whole: &[DVec2]) -> Option<Vec<HalfPlane>> {
+        let mut out = Vec::new();
+        for k in 0..self.normals.len() {
+            let h = screen.half_plane(point, self.normals[k]);
+            // Most bodies stand aside: a plane with the screen on its far side tells, and likely of the next one too.
             if whole.iter().all(|p| h.at(*p) <= 0.0) {
+                self.normals.swap(0, k);
                 return None;
             }
             out.push(h);
         }
-        let slack = SLACK * self.extent + MARGIN * (cone.obstacle.rough + screen.rough);
-        match part_in_front(&cone.body, &screen.plane, slack)? {
+        let slack = SLACK * extent + MARGIN * (self.obstacle.rough + screen.rough);
+        match part_in_front(&self.body, &screen.plane, slack)? {
             Cow::Borrowed(_) => Some(out),
             Cow::Owned(part) => {
-                let normals = outline(&part, self.point, cone.obstacle.warp, EDGE_ON * self.extent)?;
-                Some(normals.iter().map(|n| screen.half_plane(self.point, *n)).collect())
+                let normals = outline(&part, point, self.obstacle.warp, EDGE_ON * extent)?;
+                Some(normals.iter().map(|n| screen.half_plane(point, *n)).collect())
             }
         }
     }

@@ -92,7 +92,7 @@ impl Scratch {
     pub fn in_shadow(&mut self, x: DVec3, normal: DVec3, polygon: &[DVec2]) -> f64 {
         let scratch = self;
         scratch.cutting.clear();
-        for (k, shadow) in scratch.shadows.iter().enumerate().filter(|(_, s)| !s.is_empty()) {
+        for (k, shadow) in scratch.shadows.iter_mut().enumerate().filter(|(_, s)| !s.is_empty()) {
             match lies(polygon, shadow) {
                 Shadow::Misses => {}
                 Shadow::Hides => return lambert(x, normal, polygon),
@@ -202,9 +202,11 @@ impl Body {
 }
 
 /// How the common part of half-planes lies to a convex polygon. A shadow that passes a corner by may count as cutting.
-pub(super) fn lies(polygon: &[DVec2], shadow: &[HalfPlane]) -> Shadow {
+/// A half-plane with the polygon on its far side comes first from then on: it will tell of the next polygon too.
+pub(super) fn lies(polygon: &[DVec2], shadow: &mut [HalfPlane]) -> Shadow {
     let mut hides = true;
-    for h in shadow {
+    for k in 0..shadow.len() {
+        let h = shadow[k];
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in polygon {
             let at = h.at(*p);
@@ -212,6 +214,7 @@ pub(super) fn lies(polygon: &[DVec2], shadow: &[HalfPlane]) -> Shadow {
             high = high.max(at);
         }
         if high <= 0.0 {
+            shadow.swap(0, k);
             return Shadow::Misses;
         }
         hides &= low >= 0.0;
