@@ -6,6 +6,9 @@ use crate::scene::Stage;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+/// Patches along one line of a grid: (place, patch, ratio).
+type Line = Vec<(u32, u32, f64)>;
+
 /// A wave has to hold this share of the variance along its direction to be called one.
 const LEAST_SHARE: f64 = 0.5;
 
@@ -35,7 +38,7 @@ pub struct Beat {
 /// The strongest wave along each axis of a surface's grid: `ratios` of its patches.
 pub(super) fn beats(stage: &Stage, ratios: &[(u32, f64)]) -> Vec<Beat> {
     let along = |axis: u8| {
-        let mut rows: BTreeMap<(u32, u32), Vec<(u32, u32, f64)>> = BTreeMap::new();
+        let mut rows: BTreeMap<(u32, u32), Line> = BTreeMap::new();
         for (patch, ratio) in ratios {
             let p = &stage.patches[*patch as usize];
             let (line, place) = if axis == 0 { (p.b, p.a) } else { (p.a, p.b) };
@@ -48,8 +51,8 @@ pub(super) fn beats(stage: &Stage, ratios: &[(u32, f64)]) -> Vec<Beat> {
 }
 
 /// Power over all rows at every frequency that the longest can tell apart.
-fn strongest(stage: &Stage, axis: u8, rows: &[Vec<(u32, u32, f64)>]) -> Option<Beat> {
-    let long: Vec<&Vec<(u32, u32, f64)>> = rows.iter().filter(|r| r.len() >= SHORTEST).collect();
+fn strongest(stage: &Stage, axis: u8, rows: &[Line]) -> Option<Beat> {
+    let long: Vec<&Line> = rows.iter().filter(|r| r.len() >= SHORTEST).collect();
     let longest = long.iter().map(|r| r.len()).max()?;
     let count = long.iter().map(|r| r.len()).sum::<usize>() as f64;
     let means: Vec<f64> = long.iter().map(|r| r.iter().map(|x| x.2).sum::<f64>() / r.len() as f64).collect();
@@ -60,7 +63,7 @@ fn strongest(stage: &Stage, axis: u8, rows: &[Vec<(u32, u32, f64)>]) -> Option<B
         return None;
     }
     let power = |frequency: f64| -> f64 {
-        let of = |(row, mean): (&&Vec<(u32, u32, f64)>, &f64)| {
+        let of = |(row, mean): (&&Line, &f64)| {
             let (mut c, mut s) = (0.0, 0.0);
             for (place, _, ratio) in row.iter() {
                 let phase = TAU * frequency * f64::from(*place);

@@ -147,7 +147,8 @@ fn pictures(args: &AuditArgs, stage: &Stage, params: &Params, audited: &Audited)
                 .map(|p| p.point)
                 .sum(),
         };
-        let caption = unfolded.caption(&format!("{patch} ({surface})"), &source.source.name, Some((exact, "exact")));
+        let caption =
+            unfolded.caption(&format!("Patch {patch} ({surface})"), &source.source.name, Some((exact, "exact")));
         unfolded.picture.caption.clone_from(&caption);
         out.push(AuditPicture { name: format!("unfolded-{patch}.png"), caption, image: unfolded.picture.paint() });
     }

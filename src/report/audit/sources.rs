@@ -85,7 +85,7 @@ fn row(s: &SourceAudit, record: &AuditRecord, longest: f64) -> SourceRow {
             s.mended_by.and_then(|k| record.cures.get(k)).map(|c| c.words.clone())
         },
         worst: seen.worst.iter().enumerate().map(|(k, v)| worst(k, v, record.form)).collect(),
-        beats: seen.beats.iter().map(|b| beat(b)).collect(),
+        beats: seen.beats.iter().map(beat).collect(),
     }
 }
 
