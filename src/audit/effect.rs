@@ -3,7 +3,8 @@
 //! With `F~ = F + sum_c E_c` and both systems solved, the difference is linear in the causes, exactly:
 //! `(I - rho F)(B~ - B) = rho sum_c E_c B~`. So the error of the solution is split as its form factors are.
 
-use super::causes::{Cause, Pair, Split};
+use super::causes::{Cause, Pair};
+use super::split::Split;
 use crate::methods::PatchVectors;
 use crate::scene::Stage;
 use crate::solution::FormFactors;

@@ -8,13 +8,15 @@ mod effect;
 pub mod fingerprint;
 mod rank;
 mod seen;
+mod split;
 mod unfolded;
 
 pub use beats::Beat;
-pub use causes::{Cause, Pair, Split, Truth, from_shooters};
+pub use causes::{Cause, Pair};
 pub use cures::{Cure, Cured, POINTS, cured, resolution_by_pixels, subdivision_distance};
 pub use effect::{Effect, radiosity};
 pub use fingerprint::{Fingerprint, fingerprint};
 pub use rank::{FirstBounce, Source, first_bounce, source_error};
 pub use seen::{Seen, View, seen, views};
+pub use split::{Split, Truth, from_shooters};
 pub use unfolded::{Unfolded, unfold};

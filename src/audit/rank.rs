@@ -1,6 +1,7 @@
 //! Who brings the errors: sources by what they contribute to the error of the light, not by how bright they are.
 
-use super::causes::{Cause, Split};
+use super::causes::Cause;
+use super::split::Split;
 use crate::math::compensated_sum;
 use crate::methods::PatchVectors;
 use crate::scene::Stage;

@@ -2,7 +2,8 @@
 //! double, and the beats between the grid of pixels and the grid of patches.
 
 use super::beats::{Beat, beats};
-use super::causes::{Cause, Split};
+use super::causes::Cause;
+use super::split::Split;
 use crate::math::{DVec3, Frame};
 use crate::methods::hemicube::{delta_side, delta_top};
 use crate::scene::Stage;
