@@ -57,7 +57,7 @@ pub mod study;
 pub mod view;
 
 pub use api::{Check, Error, Estimator, Reference, ReferenceOptions, examine_scene, open_scene, solve};
-pub use metrics::{Comparison, Limits, Verdict, WorstPatch};
+pub use metrics::{Comparison, Limit, Limits, Metric, Place, Verdict, WorstPatch};
 pub use raycast::KernelKind;
 pub use scene::{Finding, Patch, Scene, Stage};
 pub use solution::{Provenance, Radiosity, SelfCheck};

@@ -53,13 +53,13 @@ fn verdicts(rays: u64, rms: f64, references: u64) -> [f64; 3] {
         bands: &bands,
         weights: &[1.0],
     };
-    let limits = Limits { max_rms: Some(LIMIT), max_top1: None };
+    let limits = Limits::rms(LIMIT);
     let mut counts = [0u64; 3];
     for seed in 0..references {
         let options = Options { plan: Plan { rays, ..Plan::default() }, seed: 1_000_000 + seed };
         let reference = compute(&session.tracer(), &options, &Evidence::default(), &Silent).expect("solvable");
         let comparison = compare(&solution, &Truth::Sampled(reference.patches), None, &judged, 0.95, false);
-        let verdict = decide(&comparison.expect("comparable"), &limits).verdict;
+        let verdict = decide(&comparison.expect("comparable").measured(&limits)).verdict;
         counts[match verdict {
             Verdict::Fail => 0,
             Verdict::Pass => 1,

@@ -247,7 +247,7 @@ impl Scene {
         let confidence = shared_confidence(0.95, limits);
         let solution = given(solution);
         let comparison = compare(&solution, &reference, before, &judged, confidence, false).expect("a lit reference");
-        decide(&comparison, limits).verdict
+        decide(&comparison.measured(limits)).verdict
     }
 }
 
@@ -263,8 +263,8 @@ fn sampled(replicates: Vec<Vec<f64>>) -> Truth {
 #[test]
 fn verdicts_at_the_limit_keep_their_confidence() {
     const PATCHES: usize = 60;
-    let both = Limits { max_rms: Some(LIMIT), max_top1: Some(LIMIT) };
-    for (name, limits) in [("one limit", Limits { max_top1: None, ..both }), ("two limits", both)] {
+    let (one, both) = (Limits::rms(LIMIT), Limits::rms(LIMIT).and_top1(LIMIT));
+    for (name, limits) in [("one limit", one), ("two limits", both)] {
         let mut random = Random(77 << 32);
         // 5 % bright: eq. 7 is the limit over every set of patches.
         let mut case = Case::new(PATCHES, 16, Shape::Tenth, 0.0, 0.3 * LIMIT, &mut random);
@@ -406,8 +406,8 @@ fn open_factor(case: &Case, random: &mut Random) -> Option<f64> {
         bands: &scene.bands,
         weights: &[1.0],
     };
-    let limits = Limits { max_rms: Some(LIMIT), max_top1: None };
+    let limits = Limits::rms(LIMIT);
     let reference = sampled(case.reference(random));
     let c = compare(&given(&case.candidate), &reference, None, &judged, 0.95, false).expect("a lit reference");
-    decide(&c, &limits).limits[0].rays_factor
+    decide(&c.measured(&limits)).limits[0].rays_factor
 }

@@ -137,12 +137,10 @@ impl Reference {
     }
 
     fn checked(&self, solution: &Radiosity, before: Option<&Self>, limits: &Limits) -> Result<Check, Error> {
-        let given = [limits.max_rms, limits.max_top1];
-        let sound = given.iter().flatten().all(|l| l.is_finite() && *l >= 0.0) && given.iter().any(Option::is_some);
-        if !sound {
+        if limits.is_empty() || !limits.are_sound() {
             return Err(Error::NoLimit);
         }
-        let judgement = self.judge(solution, before, Some(*limits))?;
+        let judgement = self.judge(solution, before, Some(limits.clone()))?;
         Ok(Check::new(judgement.comparison, judgement.decision.ok_or(Error::NoLimit)?))
     }
 
@@ -159,7 +157,7 @@ impl Reference {
         }
         let against = |r: &Self| Against::Reference(Box::new(r.stored.clone()));
         let before = before.map(against);
-        let question = Question { limits, confidence: CONFIDENCE, reflected: false, per_element: false };
+        let question = Question { limits, confidence: CONFIDENCE, ..Question::default() };
         Ok(judge(solution, &against(self), before.as_ref(), &Receivers::patches(self.stage()), &question)?)
     }
 }

@@ -46,6 +46,11 @@ impl Console {
         }
     }
 
+    /// True if only what was asked for is to be said.
+    pub fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
     /// Something the user should know, on stderr.
     pub fn notice(&self, text: &str) {
         if !self.quiet && !self.json {

@@ -1,6 +1,8 @@
 //! File formats: scenes, matrices, solutions, references, images; files that are whole or not there.
 
+mod archive;
 pub mod atomic;
+mod certified;
 mod claim;
 mod error;
 mod folder;
@@ -15,6 +17,7 @@ mod solution;
 mod store;
 mod unfinished;
 
+pub use certified::{certified, certified_names};
 pub use claim::{Claim, end_claims};
 pub use error::FileError;
 pub use folder::write_folder;

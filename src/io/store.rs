@@ -4,7 +4,7 @@
 //! `replicates.npz` (R x N x bands, elements likewise), `reference.csv` (means with standard errors, for people),
 //! `timing.json` (the clock, apart from everything else).
 
-use super::{BandNames, FileError, SolutionFormat, npz, write_solution};
+use super::{BandNames, FileError, SolutionFormat, archive, npz, write_solution};
 use crate::scene::{Finding, Stage};
 use crate::solution::{Provenance, Replicates, SelfCheck};
 use serde::{Deserialize, Serialize};
@@ -119,7 +119,22 @@ impl StoredReference {
 
     /// Reads a directory and verifies every byte of it.
     pub fn read(folder: &Path) -> Result<Self, FileError> {
-        let reader = Reader { folder };
+        Self::from(&Reader { place: folder, source: Source::Folder })
+    }
+
+    /// The same from the bytes of a zip archive of such a directory; `name` is what it is called.
+    pub fn read_archive(name: &Path, bytes: &[u8]) -> Result<Self, FileError> {
+        let files = archive::unzip(name, bytes)?;
+        Self::from(&Reader { place: name, source: Source::Files(files) })
+    }
+
+    /// The directory as one zip archive.
+    pub fn archive(&self, seconds: f64) -> Vec<u8> {
+        archive::zip(&self.files(seconds))
+    }
+
+    fn from(reader: &Reader) -> Result<Self, FileError> {
+        let folder = reader.place;
         let manifest = reader.manifest()?;
         let load = |name: &str| reader.verified(name, &manifest);
         load(MEANS)?;
@@ -157,13 +172,21 @@ impl StoredReference {
     }
 }
 
+/// Where the files are.
+enum Source {
+    Folder,
+    Files(BTreeMap<String, Vec<u8>>),
+}
+
 struct Reader<'a> {
-    folder: &'a Path,
+    /// Folder, or what an archive is called.
+    place: &'a Path,
+    source: Source,
 }
 
 impl Reader<'_> {
     fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
+        self.place.join(name)
     }
 
     fn damaged(&self, name: &str, problem: String) -> FileError {
@@ -172,6 +195,9 @@ impl Reader<'_> {
     }
 
     fn bytes(&self, name: &str) -> Result<Vec<u8>, FileError> {
+        if let Source::Files(files) = &self.source {
+            return files.get(name).cloned().ok_or_else(|| self.damaged(name, "is missing".into()));
+        }
         std::fs::read(self.path(name)).map_err(|e| match e.kind() {
             std::io::ErrorKind::NotFound => self.damaged(name, "is missing".into()),
             _ => FileError::system(&self.path(name), "read", &e).mend("a reference is a folder of readable files"),
@@ -184,8 +210,8 @@ impl Reader<'_> {
     }
 
     fn manifest(&self) -> Result<Manifest, FileError> {
-        if !self.path(MANIFEST).is_file() {
-            return Err(FileError::new(self.folder, format!("is not a reference directory: it has no {MANIFEST}"))
+        if matches!(self.source, Source::Folder) && !self.path(MANIFEST).is_file() {
+            return Err(FileError::new(self.place, format!("is not a reference directory: it has no {MANIFEST}"))
                 .mend("make one with `etalon reference SCENE -o DIR`"));
         }
         let bytes = self.bytes(MANIFEST)?;

@@ -167,7 +167,7 @@ impl<'a> View<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{Limits, Verdict, decide};
+    use crate::metrics::{Beside, Limits, Verdict, decide, measure};
     use crate::solution::Replicates;
     use crate::stats::test_random::Random;
 
@@ -241,7 +241,16 @@ mod tests {
         assert!(bright.rms.low > 0.0095 && bright.rms.high < 0.0105, "{:?}", bright.rms);
         assert!(bright.bias.low < 0.01 && bright.bias.high > 0.01 && (bright.bias.value - 0.01).abs() < 2e-4);
         assert_eq!(bright.per_band.len(), 3);
-        let limit = |max_rms: f64| decide(&bright, &Limits { max_rms: Some(max_rms), max_top1: None }).verdict;
+        let solution = Radiosity { bands: 3, values: truth.iter().map(|b| b * 1.01).collect(), std_err: None };
+        let beside = Beside { before: None, baseline: None, objects: &vec!["o"; n] };
+        let limit = |max: f64| {
+            let m = measure(&solution, &reference, &judged, beside, &Limits::rms(max), 0.95, false).unwrap();
+            assert_eq!(m[0].estimate, Some(bright.rms));
+            // The noise is a tenth of a per cent: what would have been caught is not far above the limit.
+            let caught = m[0].smallest_caught.unwrap();
+            assert!(caught > max && caught < max + 2e-3, "{max} {caught}");
+            decide(&m).verdict
+        };
         assert_eq!([0.009, 0.010, 0.011].map(limit), [Verdict::Fail, Verdict::Inconclusive, Verdict::Pass]);
     }
 

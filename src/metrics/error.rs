@@ -51,4 +51,14 @@ pub enum MetricsError {
         /// What was asked for.
         confidence: f64,
     },
+    /// A limit on a place that is not there.
+    #[error("there is no {kind} \"{name}\" in the judged state; there are: {known}")]
+    NoSuchPlace {
+        /// Surface, object or band.
+        kind: &'static str,
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
 }

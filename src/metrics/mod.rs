@@ -1,6 +1,7 @@
 //! How far a solution is from the reference, and what that means: eq. 7 of GSG90, top 1 %, bias, energy.
 //! Areas, weights and names come in as data; [`decide`] is the only place that decides.
 
+mod baseline;
 mod bias;
 mod breakdown;
 mod check;
@@ -9,7 +10,10 @@ mod error;
 mod floor;
 mod groups;
 mod histogram;
+mod limits;
+mod measure;
 mod noise;
+mod power;
 mod quantity;
 mod rates;
 mod residual;
@@ -25,7 +29,9 @@ mod sums;
 mod top1;
 mod types;
 mod verdict;
+mod worst;
 
+pub use baseline::{Change, changes, growth, growth_of_squares};
 pub use bias::relative_bias;
 pub use breakdown::{Breakdown, break_down};
 pub use compare::compare;
@@ -33,6 +39,8 @@ pub use error::MetricsError;
 pub use floor::top1_noise_floor;
 pub use groups::GroupError;
 pub use histogram::Histogram;
+pub use limits::{Limit, Limits, Metric, Place};
+pub use measure::{Beside, Measured, measure};
 pub use noise::{Beyond, NoiseTest};
 pub use rates::{FLOOR_FACTOR, Point, Rate, Reached, fit_rate, reached};
 pub use residual::{BandBounds, Rebounded, ResidualMetrics, bound_error};
@@ -43,5 +51,6 @@ pub use rms::{Rms, relative_rms};
 pub use scale::{Scale, fit_scale};
 pub use split::{Part, Split, Steps, split};
 pub use top1::{top1_count, top1_rms, top1_set};
-pub use types::{Comparison, Decision, Judged, LimitOutcome, Limits, Truth, Verdict, WorstPatch};
+pub use types::{Comparison, Decision, Judged, LimitOutcome, Truth, Verdict, WorstPatch};
 pub use verdict::{decide, shared_confidence};
+pub use worst::worst_patch;

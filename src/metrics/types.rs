@@ -82,32 +82,6 @@ pub struct WorstPatch {
     pub std_err: Option<f64>,
 }
 
-/// Limits a solution has to keep; fractions. At least one is set.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Limits {
-    /// Limit on eq. 7.
-    pub max_rms: Option<f64>,
-    /// Limit on the top 1 %.
-    pub max_top1: Option<f64>,
-}
-
-impl Limits {
-    /// A limit on eq. 7 alone, a fraction.
-    pub fn rms(max: f64) -> Self {
-        Self { max_rms: Some(max), max_top1: None }
-    }
-
-    /// A limit on the top 1 % alone, a fraction.
-    pub fn top1(max: f64) -> Self {
-        Self { max_rms: None, max_top1: Some(max) }
-    }
-
-    /// The same with a limit on the top 1 % as well.
-    pub fn and_top1(self, max: f64) -> Self {
-        Self { max_top1: Some(max), ..self }
-    }
-}
-
 /// Pass, fail, or not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -123,7 +97,7 @@ pub enum Verdict {
 /// What became of one limit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LimitOutcome {
-    /// Metric name as in the JSON: `rms` or `top1`.
+    /// Metric and place, as [`Limit::key`](super::Limit::key) writes them: `rms`, `top1`, `rms@surface:floor`.
     pub metric: String,
     /// The limit, a fraction.
     pub limit: f64,
@@ -133,6 +107,9 @@ pub struct LimitOutcome {
     pub verdict: Verdict,
     /// For an open limit: about how many times the rays would decide; `None` where rays alone may never decide.
     pub rays_factor: Option<f64>,
+    /// The smallest value that this run would have failed for sure in 19 of 20 cases; `None` where that is not known.
+    #[serde(default)]
+    pub smallest_caught: Option<f64>,
 }
 
 /// The verdict with what it rests on.

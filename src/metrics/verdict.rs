@@ -1,6 +1,8 @@
 //! Pass, fail or not known: the only place that decides.
 
-use super::types::{Comparison, Decision, LimitOutcome, Limits, Verdict};
+use super::limits::Limits;
+use super::measure::Measured;
+use super::types::{Decision, LimitOutcome, Verdict};
 use crate::stats::{Estimate, bonferroni_level};
 
 /// Twice the rays that would just do: the value itself moves from run to run by half of what its interval spans.
@@ -12,18 +14,17 @@ const TOO_CLOSE: f64 = 0.05;
 /// Confidence for each interval such that all limits given hold together (Bonferroni): `1 - (1 - confidence) / k`.
 /// For no limits or one it is `confidence` itself.
 pub fn shared_confidence(confidence: f64, limits: &Limits) -> f64 {
-    let given = [limits.max_rms, limits.max_top1].iter().flatten().count();
+    let given = limits.list().len();
     if given < 2 { confidence } else { 1.0 - bonferroni_level(1.0 - confidence, given) }
 }
 
-/// Holds a comparison against limits. A limit is failed if the interval lies above it, passed if the interval
-/// does not reach beyond it, else open. One failure fails; all passed pass.
+/// Holds what was measured against its limits. A limit is failed if the interval lies above it, passed if the interval
+/// does not reach beyond it, else open (or passed, where it is kept unless surely exceeded). One failure fails; all passed
+/// pass.
 ///
-/// A limit on a metric that the comparison does not have (no state before, or a dark one) is open.
-pub fn decide(comparison: &Comparison, limits: &Limits) -> Decision {
-    let asked = [("rms", limits.max_rms, Some(comparison.rms)), ("top1", limits.max_top1, comparison.top1)];
-    let limits: Vec<LimitOutcome> =
-        asked.into_iter().filter_map(|(metric, limit, e)| limit.map(|limit| outcome(metric, limit, e))).collect();
+/// A limit on a metric that could not be had (no state before, or a dark one) is open.
+pub fn decide(measured: &[Measured]) -> Decision {
+    let limits: Vec<LimitOutcome> = measured.iter().map(outcome).collect();
     Decision { verdict: overall(&limits), limits }
 }
 
@@ -38,18 +39,25 @@ fn overall(limits: &[LimitOutcome]) -> Verdict {
     }
 }
 
-fn outcome(metric: &str, limit: f64, estimate: Option<Estimate>) -> LimitOutcome {
+fn outcome(measured: &Measured) -> LimitOutcome {
+    let Measured { limit, estimate, smallest_caught } = measured;
     let known = estimate.unwrap_or(Estimate { value: 0.0, std_err: None, low: 0.0, high: f64::MAX });
-    let verdict = if known.low > limit {
+    let verdict = if known.low > limit.max {
         Verdict::Fail
-    } else if known.high <= limit {
+    } else if known.high <= limit.max || (limit.unless_sure && estimate.is_some()) {
         Verdict::Pass
     } else {
         Verdict::Inconclusive
     };
     let open = verdict == Verdict::Inconclusive && estimate.is_some();
-    let rays_factor = if open { rays_factor(&known, limit) } else { None };
-    LimitOutcome { metric: metric.to_string(), limit, estimate: known, verdict, rays_factor }
+    LimitOutcome {
+        metric: limit.key(),
+        limit: limit.max,
+        estimate: known,
+        verdict,
+        rays_factor: if open { rays_factor(&known, limit.max) } else { None },
+        smallest_caught: *smallest_caught,
+    }
 }
 
 /// About how many times the rays would decide an open limit, if the value stays where it is: half-widths shrink
@@ -69,31 +77,18 @@ fn whole(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metrics::{Limit, Metric};
 
     fn estimate(low: f64, value: f64, high: f64) -> Estimate {
         Estimate { value, std_err: Some(0.5 * (high - value)), low, high }
     }
 
-    fn comparison(rms: Estimate, top1: Option<Estimate>) -> Comparison {
-        Comparison {
-            confidence: 0.95,
-            rms,
-            top1,
-            rms_reflected: None,
-            bias: Estimate::exact(0.0),
-            per_band: vec![],
-            reference_noise_floor: None,
-            solution_noise: None,
-            emitter_share: 0.0,
-            scale: None,
-            scale_of_total: None,
-            patches: 1,
-            worst: vec![],
-        }
+    fn of(metric: Metric, max: f64, estimate: Option<Estimate>) -> Measured {
+        Measured { limit: Limit::new(metric, max), estimate, smallest_caught: None }
     }
 
     fn of_rms(e: Estimate, limit: f64) -> LimitOutcome {
-        decide(&comparison(e, None), &Limits { max_rms: Some(limit), max_top1: None }).limits.remove(0)
+        decide(&[of(Metric::Rms, limit, Some(e))]).limits.remove(0)
     }
 
     #[test]
@@ -110,8 +105,7 @@ mod tests {
     #[test]
     fn one_sure_failure_fails_and_one_open_limit_leaves_it_open() {
         let (good, bad, open) = (estimate(0.01, 0.02, 0.03), estimate(0.06, 0.07, 0.08), estimate(0.04, 0.05, 0.06));
-        let limits = Limits { max_rms: Some(0.05), max_top1: Some(0.05) };
-        let of = |rms, top1| decide(&comparison(rms, Some(top1)), &limits).verdict;
+        let of = |rms, top1| decide(&[of(Metric::Rms, 0.05, Some(rms)), of(Metric::Top1, 0.05, Some(top1))]).verdict;
         assert_eq!(of(good, good), Verdict::Pass);
         assert_eq!(of(good, bad), Verdict::Fail);
         assert_eq!(of(open, bad), Verdict::Fail);
@@ -121,18 +115,19 @@ mod tests {
     }
 
     #[test]
-    fn only_limits_given_count() {
-        let bad = estimate(0.06, 0.07, 0.08);
-        let d = decide(&comparison(Estimate::exact(0.0), Some(bad)), &Limits { max_rms: Some(0.05), max_top1: None });
-        assert_eq!((d.verdict, d.limits.len(), d.limits[0].metric.as_str()), (Verdict::Pass, 1, "rms"));
-        let d = decide(&comparison(bad, Some(bad)), &Limits { max_rms: None, max_top1: Some(0.09) });
-        assert_eq!((d.verdict, d.limits.len(), d.limits[0].metric.as_str()), (Verdict::Pass, 1, "top1"));
+    fn a_metric_that_is_missing_is_open_and_rays_do_not_help() {
+        let d = decide(&[of(Metric::Top1, 0.5, None)]);
+        assert_eq!((d.verdict, d.limits[0].rays_factor), (Verdict::Inconclusive, None));
     }
 
     #[test]
-    fn a_metric_that_is_missing_is_open_and_rays_do_not_help() {
-        let d = decide(&comparison(Estimate::exact(0.0), None), &Limits { max_rms: None, max_top1: Some(0.5) });
-        assert_eq!((d.verdict, d.limits[0].rays_factor), (Verdict::Inconclusive, None));
+    fn kept_unless_surely_exceeded() {
+        let of = |e: Estimate| {
+            let limit = Limit { unless_sure: true, ..Limit::new(Metric::Worse, 0.0) };
+            decide(&[Measured { limit, estimate: Some(e), smallest_caught: None }]).verdict
+        };
+        assert_eq!(of(estimate(-0.01, 0.001, 0.02)), Verdict::Pass);
+        assert_eq!(of(estimate(0.001, 0.01, 0.02)), Verdict::Fail);
     }
 
     #[test]
@@ -150,9 +145,9 @@ mod tests {
 
     #[test]
     fn error_is_shared_among_the_limits() {
-        let both = Limits { max_rms: Some(0.1), max_top1: Some(0.1) };
+        let both = Limits::rms(0.1).and_top1(0.1);
         assert!((shared_confidence(0.95, &both) - 0.975).abs() < 1e-15);
-        assert_eq!(shared_confidence(0.95, &Limits { max_top1: None, ..both }), 0.95);
+        assert_eq!(shared_confidence(0.95, &Limits::rms(0.1)), 0.95);
         assert_eq!(shared_confidence(0.95, &Limits::default()), 0.95);
     }
 }

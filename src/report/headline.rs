@@ -59,11 +59,19 @@ pub(super) fn limit_reason(record: &Record, outcome: &LimitOutcome) -> String {
     }
     let what = differs(&outcome.estimate, &confidence(record.comparison.confidence));
     match outcome.verdict {
-        Verdict::Pass => format!("{subject} is {what}, within the limit of {limit}"),
+        Verdict::Pass => format!("{subject} is {what}, within the limit of {limit}{}", caught(outcome)),
         Verdict::Fail => format!("{subject} is {what}, beyond the limit of {limit}"),
         Verdict::Inconclusive => {
             format!("{subject} is {what}, too close to the limit of {limit} to tell{}", more_rays(outcome.rays_factor))
         }
+    }
+}
+
+/// What a passed limit might have let through.
+fn caught(outcome: &LimitOutcome) -> String {
+    match outcome.smallest_caught {
+        Some(least) if is_known(&outcome.estimate) => format!(" (one of {} would have failed)", percent(least)),
+        _ => String::new(),
     }
 }
 
@@ -73,7 +81,25 @@ fn limit_subject(record: &Record, metric: &str) -> String {
     match metric {
         "rms" => error.into(),
         "top1" => format!("{error} on the 1 % of {} that change most", Level::of(record).nouns()),
+        other => subject_elsewhere(other, is_reflected(record), Level::of(record).noun()),
+    }
+}
+
+/// What a limit by name is on: metric and place.
+fn subject_elsewhere(key: &str, reflected: bool, noun: &str) -> String {
+    let (metric, place) = key.split_once('@').map_or((key, None), |(m, p)| (m, Some(p)));
+    let light = if reflected { "reflected luminance" } else { "luminance" };
+    let what = match metric {
+        "rms" => format!("its error of {light}"),
+        "worst" => format!("its worst {noun}, relative to the reference there,"),
+        "energy" => "its light in excess or missing".into(),
+        "worse" => "its growth of error over the baseline".into(),
         other => format!("its {other}"),
+    };
+    match place.and_then(|p| p.split_once(':')) {
+        None => what,
+        Some(("band", name)) => format!("{what} in band {name}").replace(light, "radiosity"),
+        Some((kind, name)) => format!("{what} on {kind} \"{name}\""),
     }
 }
 

@@ -83,10 +83,36 @@ pub fn metric_lines(record: &Record) -> Vec<MetricLine> {
         };
         lines.extend(c.per_band.iter().filter_map(band));
     }
+    // Limits by name: on places, on what has no line of its own.
+    let own: Vec<String> = lines.iter().map(|l| l.key.clone()).collect();
+    let named = record.decision.iter().flat_map(|d| &d.limits).filter(|o| !own.contains(&o.metric));
+    lines.extend(named.map(|o| judged(record, &o.metric, &name_of(&o.metric), meaning_of(&o.metric), &o.estimate)));
     lines.extend(c.reference_noise_floor.map(|f| plain("reference_noise_floor", "Noise of the reference", FLOOR, f)));
     lines.extend(c.solution_noise.map(|f| plain("solution_noise", "Noise of the solution", SOLUTION_NOISE, f)));
     lines.push(plain("emitter_share", "Share of emitters", SHARE, c.emitter_share));
     lines
+}
+
+/// Name of a limit's metric for people.
+fn name_of(key: &str) -> String {
+    let (metric, place) = key.split_once('@').map_or((key, None), |(m, p)| (m, Some(p)));
+    let what = match metric {
+        "rms" => "Error",
+        "worst" => "Worst patch",
+        "energy" => "Light in excess or missing",
+        "worse" => "Growth of error over the baseline",
+        other => other,
+    };
+    place.map_or(what.into(), |p| format!("{what}, {}", p.replacen(':', " ", 1)))
+}
+
+fn meaning_of(key: &str) -> &'static str {
+    match key.split('@').next() {
+        Some("worst") => "Largest difference of any patch, relative to the reference there",
+        Some("energy") => "Size of the bias: light in excess or missing",
+        Some("worse") => "Eq. 7 less eq. 7 of the baseline, judged by the same replicates",
+        _ => "Eq. 7 in this place alone",
+    }
 }
 
 fn outcome<'a>(record: &'a Record, metric: &str) -> Option<&'a LimitOutcome> {
@@ -96,7 +122,7 @@ fn outcome<'a>(record: &'a Record, metric: &str) -> Option<&'a LimitOutcome> {
 fn judged(record: &Record, key: &str, name: &str, meaning: &'static str, e: &Estimate) -> MetricLine {
     let outcome = outcome(record, key);
     let e = outcome.map_or(e, |o| &o.estimate);
-    let shown = percent_estimate(e, key == "bias");
+    let shown = percent_estimate(e, key == "bias" || key == "worse");
     MetricLine {
         key: key.into(),
         name: name.into(),

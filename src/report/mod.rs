@@ -6,6 +6,7 @@
 mod artifact;
 mod asked;
 pub mod audit;
+mod changes;
 pub mod curves;
 mod figures;
 mod format;
@@ -22,6 +23,7 @@ mod testing;
 mod text;
 
 pub use artifact::{Artifact, Exporter, Extras, Phase, ReportError, save};
+pub use changes::change_lines;
 pub use figures::{ColourBar, Figure, Mark, ViewFigures, figures};
 pub use headline::{Headline, headline, warnings};
 pub use html::{HtmlReport, PAGE_NAME};
@@ -30,4 +32,4 @@ pub use junit::JUnit;
 pub use layers::exr_layers;
 pub use lines::{MetricLine, WorstLine, metric_lines, worst_lines};
 pub use markdown::Markdown;
-pub use text::{Text, text_summary};
+pub use text::{Text, one_line, text_summary};

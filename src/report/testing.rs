@@ -63,6 +63,7 @@ pub(crate) fn record() -> Record {
             ("Program".into(), "etalon 0.1.0".into()),
             ("Reference".into(), "closed form, direct light only".into()),
         ],
+        looks: Vec::new(),
         notices: vec!["surface \"red wall\": a notice of the scene".into()],
         findings: vec![finding()],
         replay: "etalon check point-lamps.csv --reference room.ref --max-rms 5%".into(),
@@ -139,7 +140,15 @@ pub(crate) fn with_verdict(verdict: Verdict) -> Record {
         Verdict::Fail => (0.01, None),
         Verdict::Inconclusive => (0.0135, Some(123.0)),
     };
-    let outcome = LimitOutcome { metric: "rms".into(), limit, estimate: r.comparison.rms, verdict, rays_factor };
+    let estimate = r.comparison.rms;
+    let outcome = LimitOutcome {
+        metric: "rms".into(),
+        limit,
+        estimate,
+        verdict,
+        rays_factor,
+        smallest_caught: Some(limit + 0.001),
+    };
     r.decision = Some(Decision { verdict, limits: vec![outcome] });
     r
 }

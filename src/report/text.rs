@@ -19,6 +19,12 @@ impl Exporter for Text {
     }
 }
 
+/// The one line a log needs: verdict, solution, what it rests on.
+pub fn one_line(record: &Record) -> String {
+    let head = headline(record);
+    format!("{} {}", head.word, printable(&head.sentence))
+}
+
 /// Verdict, metrics and worst patches; `colour` only paints the verdict and dims what is secondary.
 pub fn text_summary(record: &Record, colour: bool) -> String {
     let head = headline(record);
@@ -80,7 +86,7 @@ fn paint(text: &str, code: &str, colour: bool) -> String {
 }
 
 /// Columns wide enough for their widest cell; those marked flush right.
-fn table<const N: usize>(rows: &[[String; N]], right: [bool; N]) -> String {
+pub(super) fn table<const N: usize>(rows: &[[String; N]], right: [bool; N]) -> String {
     let wide = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0);
     let widths: [usize; N] = std::array::from_fn(wide);
     let cell = |row: &[String; N], c: usize| {

@@ -3,7 +3,8 @@
 use crate::io::StoredReference;
 use crate::math::DVec3;
 use crate::metrics::{
-    self, Breakdown, Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, shared_confidence,
+    self, Beside, Breakdown, Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, measure,
+    shared_confidence,
 };
 use crate::scene::{Material, NO_FACET, Patch, Region, Stage, StageSurface};
 use crate::solution::Radiosity;
@@ -127,7 +128,7 @@ pub enum JudgeError {
 }
 
 /// What is asked of the judge.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Default)]
 pub struct Question {
     /// Limits; none for a mere comparison.
     pub limits: Option<Limits>,
@@ -137,12 +138,14 @@ pub struct Question {
     pub reflected: bool,
     /// Elements instead of patches.
     pub per_element: bool,
+    /// The solution of the baseline, for a limit on becoming worse.
+    pub baseline: Option<Radiosity>,
 }
 
 impl Question {
     /// Confidence of each interval.
     fn shared_confidence(&self) -> f64 {
-        self.limits.map_or(self.confidence, |l| shared_confidence(self.confidence, &l))
+        self.limits.as_ref().map_or(self.confidence, |l| shared_confidence(self.confidence, l))
     }
 }
 
@@ -180,7 +183,7 @@ pub fn judge(
 ) -> Result<Judgement, JudgeError> {
     let truth = reference.truth(question.per_element)?;
     let before = before.map(|b| b.truth(question.per_element)).transpose()?;
-    let surfaces = names(&receivers.surfaces);
+    let (surfaces, objects) = (names(&receivers.surfaces), names(&receivers.objects));
     let judged = receivers.judged(&surfaces);
     let confidence = question.shared_confidence();
     let mut comparison = compare(solution, &truth, before.as_ref(), &judged, confidence, question.reflected)?;
@@ -189,7 +192,10 @@ pub fn judge(
     {
         scale.name_by_reflectance(rho, rms.value);
     }
-    let decision = question.limits.map(|l| decide(&comparison, &l));
+    let beside = Beside { before: before.as_ref(), baseline: question.baseline.as_ref(), objects: &objects };
+    let held = |limits| measure(solution, &truth, &judged, beside, limits, confidence, question.reflected);
+    let measured = question.limits.as_ref().map(held).transpose()?;
+    let decision = measured.map(|m| decide(&m));
     Ok(Judgement { comparison, decision })
 }
 

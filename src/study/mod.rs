@@ -1,10 +1,12 @@
 //! Conducts whole runs: reference, solve, check, demo. Hands finished records to reports, which only format.
 
 pub mod audit;
+mod baseline;
 mod contributions;
 pub mod converge;
 mod judge;
 mod kept;
+mod looks;
 mod receivers;
 mod record;
 mod residual;
@@ -15,9 +17,11 @@ mod shoot;
 mod split;
 pub mod validate;
 
+pub use baseline::{Baseline, JudgedBy, Taken};
 pub use contributions::{Contributions, Rows, Source, contributions};
 pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, break_down, judge};
 pub use kept::KeptWork;
+pub use looks::{Decided, Look, Seen, confidence_of_look, until_decided};
 pub use receivers::at_receivers;
 pub use record::{Part, Record, Setting};
 pub use residual::{ResidualRequest, ResidualRun, residual};

@@ -1,6 +1,6 @@
 //! The finished record of a comparison: all a report needs, nothing left to compute.
 
-use super::Contributions;
+use super::{Contributions, Look};
 use crate::metrics::{Breakdown, Comparison, Decision, Split};
 use crate::scene::{Finding, Stage};
 use crate::solution::Radiosity;
@@ -27,6 +27,9 @@ pub struct Record {
     /// What the scene doctor found.
     #[serde(default)]
     pub findings: Vec<Finding>,
+    /// Looks by better and better references, where it took more than the stored one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub looks: Vec<Look>,
     /// Things the reader has to know: self-check findings, notices of the scene.
     pub notices: Vec<String>,
     /// Effective settings.

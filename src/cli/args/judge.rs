@@ -2,6 +2,7 @@
 
 use super::reference::Truth;
 use crate::cli::values::{Fraction, PerLevel, Span, StateChoice};
+use crate::metrics::Limit;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -10,7 +11,8 @@ use std::path::PathBuf;
 pub struct CompareArgs {
     /// Solution file or reference directory.
     pub solution: PathBuf,
-    /// Reference directory, or another solution (then no rays: old against new).
+    /// Reference directory, one that comes with the program (builtin:NAME), or another solution (then no rays: old
+    /// against new).
     // With --residual there is none, and nobody looks at this value.
     #[arg(
         long,
@@ -102,15 +104,48 @@ pub struct CheckArgs {
     /// Limit on the top-1 % metric; needs --before.
     #[arg(long, value_name = "Y", allow_hyphen_values = true)]
     pub max_top1: Option<Fraction>,
+    /// More limits.
+    #[command(flatten)]
+    pub limits: LimitArgs,
     /// Write JUnit XML here.
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
     /// Exit code instead of 3 when inconclusive.
     #[arg(long, value_enum, value_name = "pass|fail")]
     pub on_inconclusive: Option<OnInconclusive>,
-    /// With --residual: cast fewer rays where all would not fit into this time. Without, a check casts none.
+    /// While inconclusive: compute a better reference of the same scene and look again, with intervals that hold
+    /// although the check stops as soon as it knows.
+    #[arg(long, conflicts_with = "residual")]
+    pub until_decided: bool,
+    /// With --until-decided: stop when no better reference would fit into this time (default 10m). With --residual: cast
+    /// fewer rays where all would not fit. Else a check casts none.
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub max_time: Option<Span>,
+    /// With --until-decided: keep the last reference computed here, for the next check to begin with.
+    #[arg(long, value_name = "DIR", requires = "until_decided")]
+    pub save_reference: Option<PathBuf>,
+}
+
+/// Limits beside those on eq. 7 and the top 1 %.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "More limits")]
+pub struct LimitArgs {
+    /// Limit on the worst patch: |difference| relative to the reference there.
+    #[arg(long, value_name = "X", conflicts_with = "residual", allow_hyphen_values = true)]
+    pub max_worst: Option<Fraction>,
+    /// Limit on the light in excess or missing over the whole scene.
+    #[arg(long, value_name = "X", conflicts_with = "residual", allow_hyphen_values = true)]
+    pub max_energy: Option<Fraction>,
+    /// A limit by name, as often as you like: METRIC=X or METRIC@WHERE=X; METRIC is rms, worst or energy, WHERE is
+    /// surface:NAME, object:NAME or band:NAME. For example rms@surface:floor=3%.
+    #[arg(long = "limit", value_name = "LIMIT", conflicts_with = "residual", allow_hyphen_values = true)]
+    pub named: Vec<Limit>,
+    /// A baseline (`etalon baseline save`): eq. 7 must not be surely larger than that of the solution stored there.
+    #[arg(long, value_name = "FILE", conflicts_with = "residual")]
+    pub baseline: Option<PathBuf>,
+    /// With --baseline: eq. 7 may be larger by this much, and has to be surely so: then a close call is inconclusive.
+    #[arg(long, value_name = "X", requires = "baseline", allow_hyphen_values = true)]
+    pub max_worse: Option<Fraction>,
 }
 
 /// What exit 3 becomes.

@@ -1,6 +1,7 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
 mod audit;
+mod baseline;
 mod converge;
 mod form_factors;
 mod judge;
@@ -13,6 +14,7 @@ mod solve;
 mod suites;
 
 pub use audit::{AuditArgs, AuditCommand, AuditForm};
+pub use baseline::{BaselineChangeArgs, BaselineCommand, BaselineSaveArgs, BisectArgs};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
 pub use form_factors::{
     FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
@@ -94,6 +96,12 @@ pub enum Command {
     Compare(CompareArgs),
     /// The same with limits and a verdict.
     Check(CheckArgs),
+    /// A stored solution that later ones are held against: saved, compared, replaced.
+    #[command(subcommand)]
+    Baseline(BaselineCommand),
+    /// A check for `git bisect run`: exit 0 good, 1 bad, 125 skip (no verdict, or no solution to read); 128 ends the
+    /// bisection. Takes what check takes; better references are computed while it is open (--max-time).
+    Bisect(BisectArgs),
     /// Convergence curves: error against shots, rays and seconds, of any methods and of series of snapshots.
     Converge(ConvergeCommand),
     /// What a method is wrong about, why, and what would mend it.

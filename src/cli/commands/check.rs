@@ -1,20 +1,17 @@
 //! `etalon compare` and `etalon check`
 
+use super::bench::{Bench, by_patch, patch_means};
 use super::report::{Stopwatch, write_report};
-use super::{check_residual, inputs, split, told};
-use crate::cli::args::{CheckArgs, CompareArgs, Kernel, OnInconclusive, Truth};
+use super::{check_residual, inputs, limits, looks, split, told};
+use crate::cli::args::{CheckArgs, CompareArgs, Kernel, OnInconclusive};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
-use crate::cli::values::PerLevel;
-use crate::io::{SolutionFile, StoredReference, atomic, is_reference, read_solution};
+use crate::io::atomic;
 use crate::metrics::{Limits, Verdict};
-use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, text_summary};
+use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, one_line, text_summary};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
-use crate::study::{
-    self, Against, Contributions, Question, Receivers, Record, Rows, Session, anonymous_stage, break_down, judge,
-};
-use crate::view::{Photometry, Primaries};
+use crate::study::{self, Against, Contributions, Look, Question, Record, Rows, Session, break_down, judge};
 use std::io::IsTerminal;
 use std::path::Path;
 
@@ -26,7 +23,7 @@ pub fn compare(args: &CompareArgs, kernel: Kernel, console: &Console) -> Result<
     if args.residual.residual {
         return check_residual::compare(args, kernel, console);
     }
-    let record = run(&Asked { args, limits: None, on_inconclusive: None, kernel }, console)?;
+    let record = run(&Asked { args, check: None, limits: None, until_decided: false, kernel }, console)?;
     show(&record, console)?;
     Ok(exit::DONE)
 }
@@ -36,29 +33,25 @@ pub fn check(args: &CheckArgs, kernel: Kernel, console: &Console) -> Result<u8, 
     if args.compare.residual.residual {
         return check_residual::check(args, kernel, console);
     }
-    let limits = limits(args)?;
-    args.junit.as_deref().map(inputs::check_writable).transpose()?;
-    let asked = Asked { args: &args.compare, limits: Some(limits), on_inconclusive: args.on_inconclusive, kernel };
-    let record = run(&asked, console)?;
-    if let Some(path) = &args.junit {
-        write_only(path, &JUnit, &record)?;
-    }
+    let record = checked(args, args.until_decided, kernel, console)?;
     show(&record, console)?;
     let decision = record.decision.as_ref().map(|d| exit_code(d.verdict, args.on_inconclusive));
     Ok(decision.unwrap_or(exit::DONE))
 }
 
-fn limits(args: &CheckArgs) -> Result<Limits, Failure> {
-    let limits = Limits { max_rms: args.max_rms.map(|f| f.0), max_top1: args.max_top1.map(|f| f.0) };
-    if limits == Limits::default() {
-        return Err(Failure::input("a check needs at least one limit: give --max-rms, --max-top1, or both"));
+/// A finished check, its files written.
+pub fn checked(args: &CheckArgs, until_decided: bool, kernel: Kernel, console: &Console) -> Result<Record, Failure> {
+    let limits = limits::given(args)?;
+    args.junit.as_deref().map(inputs::check_writable).transpose()?;
+    if let Some(folder) = &args.save_reference {
+        atomic::check_folder(folder)?;
     }
-    if limits.max_top1.is_some() && args.compare.before.is_none() {
-        return Err(Failure::input(
-            "--max-top1 needs --before: the reference (or solution) of the state before the change",
-        ));
+    let asked = Asked { args: &args.compare, check: Some(args), limits: Some(limits), until_decided, kernel };
+    let record = run(&asked, console)?;
+    if let Some(path) = &args.junit {
+        write_only(path, &JUnit, &record)?;
     }
-    Ok(limits)
+    Ok(record)
 }
 
 /// What a verdict ends the program with.
@@ -70,9 +63,11 @@ pub fn exit_code(verdict: Verdict, on_inconclusive: Option<OnInconclusive>) -> u
     }
 }
 
-fn show(record: &Record, console: &Console) -> Result<(), Failure> {
+/// Prints a finished record: everything, or with `--quiet` the one line a log needs.
+pub fn show(record: &Record, console: &Console) -> Result<(), Failure> {
     let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    console.result(text_summary(record, colour).trim_end(), &json_object(record)?);
+    let text = if console.is_quiet() { one_line(record) } else { text_summary(record, colour) };
+    console.result(text.trim_end(), &json_object(record)?);
     Ok(())
 }
 
@@ -83,105 +78,80 @@ fn write_only(path: &Path, exporter: &dyn Exporter, record: &Record) -> Result<(
     Ok(())
 }
 
-/// Either a stored reference or a solution, as a path names it.
-pub enum Input {
-    Reference(Box<StoredReference>),
-    Solution(SolutionFile),
-}
-
-impl Input {
-    /// Reads what a path names.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
-        if is_reference(path) {
-            Ok(Self::Reference(Box::new(StoredReference::read(path)?)))
-        } else {
-            Ok(Self::Solution(read_solution(path)?))
-        }
-    }
-
-    /// A reference that judges must have passed its self-check.
-    fn trusted(self, path: &Path, judging: bool) -> Result<Self, Failure> {
-        if let Self::Reference(r) = &self
-            && judging
-            && let Some(c) = r.self_check.failures().next()
-        {
-            return Err(Failure::input(format!(
-                "{}: this reference failed its own self-check of {} ({}); compute a sound one",
-                path.display(),
-                c.name,
-                c.finding
-            ))
-            .at(path.display().to_string()));
-        }
-        Ok(self)
-    }
-}
-
 /// What was asked for, checked.
 pub struct Asked<'a> {
     pub args: &'a CompareArgs,
+    /// Everything of a check; `None` for a mere comparison.
+    pub check: Option<&'a CheckArgs>,
     pub limits: Option<Limits>,
-    pub on_inconclusive: Option<OnInconclusive>,
+    /// Better references while a limit is open.
+    pub until_decided: bool,
     pub kernel: Kernel,
 }
 
 /// Reads everything, judges, and writes the files asked for.
 fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
-    let (args, limits) = (asked.args, asked.limits);
+    let (args, kernel) = (asked.args, asked.kernel);
     let mut watch = Stopwatch::start();
     args.markdown.as_deref().map(inputs::check_writable).transpose()?;
     args.report.as_deref().map(atomic::check_folder).transpose()?;
-    if !(0.0..1.0).contains(&args.confidence.0) || args.confidence.0 == 0.0 {
-        return Err(Failure::input("--confidence must lie between 0 and 1: 0.95 for example"));
-    }
-    split::check(args)?;
-    let reference = Input::read(&args.reference)?.trusted(&args.reference, limits.is_some())?;
-    let truth = check_truth(args, &reference)?;
-    let stage = stage(args, &reference, console)?;
-    let per_element = args.per == PerLevel::Element;
-    let receivers = if per_element { Receivers::elements(&stage) } else { Receivers::patches(&stage) };
-    let solution = fit(&args.solution, Input::read(&args.solution)?, &receivers, per_element, &stage)?;
-    let against = match reference {
-        Input::Reference(r) => Against::Reference(r),
-        Input::Solution(s) => Against::Solution(s.fit(&receivers.photometry.bands, &receivers.present())?),
-    };
-    let before = args.before.as_deref().map(|path| before(path, &receivers, limits.is_some())).transpose()?;
+    let mut bench = Bench::read(args, asked.limits.is_some(), console)?;
+    let baseline = asked.check.and_then(|c| c.limits.baseline.as_deref());
+    let baseline = baseline.map(|path| limits::baseline(path, &bench, args)).transpose()?;
     watch.lap("reading");
-    let question = Question { limits, confidence: args.confidence.0, reflected: args.reflected, per_element };
-    let judgement = judge(&solution, &against, before.as_ref(), &receivers, &question)?;
+    let mut question = Question {
+        limits: asked.limits.clone(),
+        confidence: args.confidence.0,
+        reflected: args.reflected,
+        per_element: bench.per_element,
+        baseline: baseline.as_ref().map(study::Baseline::radiosity),
+    };
+    let (judgement, looks) = match asked.check.filter(|_| asked.until_decided) {
+        Some(check) => looks::until_decided(check, &mut bench, &mut question, kernel, console)?,
+        None => {
+            let judgement = judge(&bench.solution, &bench.against, bench.before.as_ref(), &bench.receivers, &question)?;
+            (judgement, Vec::new())
+        }
+    };
     let confidence = judgement.comparison.confidence;
-    let split = split::split(args, &stage, &solution, &against, &receivers, confidence)?;
-    let by_patch = if per_element { by_patch(&solution, &stage) } else { solution.clone() };
+    let split = split::split(args, &bench.stage, &bench.solution, &bench.against, &bench.receivers, confidence)?;
     let mut record = Record {
         solution_name: args.solution.display().to_string(),
-        truth,
+        truth: bench.truth.clone(),
         decision: judgement.decision,
         comparison: judgement.comparison,
         breakdown: None,
         split,
         contributions: Vec::new(),
-        findings: told::findings(&against),
-        notices: told::notices(args, &against),
-        settings: told::settings(asked, &against),
-        provenance: told::provenance(&against, &stage),
+        findings: told::findings(&bench.against),
+        notices: notices(asked, &bench, &looks),
+        looks,
+        settings: told::settings(asked, &bench.against),
+        provenance: told::provenance(&bench.against, &bench.stage),
         replay: told::replay(asked),
-        reference: patch_means(&against, &stage, per_element),
-        solution: by_patch,
-        stage,
+        reference: patch_means(&bench.against, &bench.stage, bench.per_element),
+        solution: if bench.per_element { by_patch(&bench.solution, &bench.stage) } else { bench.solution.clone() },
+        stage: bench.stage.clone(),
     };
     watch.lap("judging");
     if let Some(path) = &args.markdown {
         write_only(path, &Markdown, &record)?;
     }
     if let Some(folder) = &args.report {
-        let stage = record.stage.clone();
-        let session = open(&stage, asked.kernel, console)?;
-        record.breakdown = Some(break_down(&solution, &against, &receivers, &question)?);
-        record.contributions = explain(session.as_ref(), &record, &against, &solution, per_element);
+        let session = open(&bench.stage, kernel, console)?;
+        record.breakdown = Some(break_down(&bench.solution, &bench.against, &bench.receivers, &question)?);
+        record.contributions = explain(session.as_ref(), &record, &bench.against, &bench.solution, bench.per_element);
         watch.lap("casting the rows of the worst again");
         write_report(folder, &record, session.as_ref(), watch)?;
     }
     Ok(record)
+}
+
+/// What the reader has to know beside the numbers.
+fn notices(asked: &Asked, bench: &Bench, looks: &[Look]) -> Vec<String> {
+    let mut out = told::notices(asked.args, &bench.against);
+    out.extend(looks::told(looks));
+    out
 }
 
 /// Kernels on the judged scene; `None` where there is no geometry.
@@ -206,122 +176,4 @@ pub fn explain(
     let confidence = record.comparison.confidence;
     let rows = Rows { receivers: &worst, elements, solution, sources: &record.solution, confidence };
     study::contributions(session, reference, &rows)
-}
-
-/// The truth the reference holds, by name; refuses another one being asked for.
-fn check_truth(args: &CompareArgs, reference: &Input) -> Result<String, Failure> {
-    let Input::Reference(r) = reference else { return Ok("solution".into()) };
-    let held = r.provenance.truth;
-    let asked = args.truth.map(|t| match t {
-        Truth::PatchSystem => TruthLevel::PatchSystem,
-        Truth::Continuous => TruthLevel::Continuous,
-    });
-    if asked.is_some_and(|a| a != held) {
-        let (asked, held) = (asked.unwrap_or(held).name(), held.name());
-        return Err(Failure::input(format!(
-            "--truth {asked}: the reference {} holds {held}",
-            args.reference.display()
-        )));
-    }
-    Ok(held.name().into())
-}
-
-/// The judged stage: the reference's own, checked against `--scene`; or `--scene`; or nothing but a number.
-fn stage(args: &CompareArgs, reference: &Input, console: &Console) -> Result<Stage, Failure> {
-    let given = match &args.scene {
-        Some(spec) => Some(inputs::stage_of(&inputs::scene(spec, args.max_edge, console)?, args.state)?),
-        None => None,
-    };
-    match (reference, given) {
-        (Input::Reference(r), Some(stage)) if stage.hash() != r.scene_hash => Err(Failure::input(format!(
-            "the reference {} does not belong to scene \"{}\" in state {}: geometry, materials, discretisation or \
-             state differ; compute it again with `etalon reference`",
-            args.reference.display(),
-            stage.name,
-            stage.state
-        ))),
-        (Input::Reference(r), _) => Ok(r.stage.clone()),
-        (Input::Solution(_), Some(stage)) => Ok(stage),
-        (Input::Solution(s), None) => {
-            s.check_complete()?;
-            Ok(anonymous_stage(s.len(), guess_photometry(s)))
-        }
-    }
-}
-
-/// Without a scene: r, g, b (or three unnamed bands) are taken for Rec. 709, anything else weighs alike.
-fn guess_photometry(s: &SolutionFile) -> Photometry {
-    let rgb = Photometry::rec709();
-    match &s.bands {
-        Some(names) if *names == rgb.bands => rgb,
-        None if s.width() == 3 => rgb,
-        names => {
-            let bands = names.clone().unwrap_or_else(|| (0..s.width()).map(|c| format!("band{c}")).collect());
-            let weight = if s.width() == 1 { Primaries::Mono.weights()[0] } else { 1.0 / s.width() as f64 };
-            Photometry { weights: vec![weight; bands.len()], bands }
-        }
-    }
-}
-
-/// A solution as it fits the receivers of a stage.
-pub fn fit(path: &Path, input: Input, to: &Receivers, per_element: bool, stage: &Stage) -> Result<Radiosity, Failure> {
-    let file = match input {
-        Input::Solution(file) => file,
-        Input::Reference(r) => {
-            let b = means(&r, per_element);
-            if b.values.len() == to.areas.len() * to.photometry.bands.len() {
-                return Ok(b);
-            }
-            let message = format!("{}: this reference is of another scene", path.display());
-            return Err(Failure::input(message).at(path.display().to_string()));
-        }
-    };
-    if let Some(hash) = &file.scene_hash
-        && !stage.facets.is_empty()
-        && *hash != stage.hash()
-    {
-        return Err(Failure::input(format!(
-            "{}: this solution says it was computed for another scene, state or discretisation than the reference",
-            path.display()
-        ))
-        .at(path.display().to_string()));
-    }
-    Ok(file.fit(&to.photometry.bands, &to.present())?)
-}
-
-fn before(path: &Path, receivers: &Receivers, judging: bool) -> Result<Against, Failure> {
-    match Input::read(path)?.trusted(path, judging)? {
-        Input::Reference(r) => Ok(Against::Reference(r)),
-        Input::Solution(s) => Ok(Against::Solution(s.fit_before(&receivers.photometry.bands, receivers.areas.len())?)),
-    }
-}
-
-/// Means of a reference at the level asked for.
-fn means(r: &StoredReference, per_element: bool) -> Radiosity {
-    match &r.elements {
-        Some(e) if per_element => e.mean(),
-        _ => r.patches.mean(),
-    }
-}
-
-/// What pictures show of the reference: one value per patch.
-fn patch_means(against: &Against, stage: &Stage, per_element: bool) -> Radiosity {
-    match against {
-        Against::Reference(r) => r.patches.mean(),
-        Against::Solution(b) if per_element => by_patch(b, stage),
-        Against::Solution(b) => b.clone(),
-    }
-}
-
-/// Area-weighted means of the elements of each patch.
-fn by_patch(elements: &Radiosity, stage: &Stage) -> Radiosity {
-    let mut values = vec![0.0; stage.patch_count() * elements.bands];
-    for (e, element) in stage.elements.iter().enumerate() {
-        let i = element.patch as usize;
-        let share = if stage.patches[i].is_present() { element.area / stage.patches[i].area } else { 0.0 };
-        for (c, b) in elements.of(e).iter().enumerate() {
-            values[i * elements.bands + c] += share * b;
-        }
-    }
-    Radiosity { bands: elements.bands, values, std_err: None }
 }

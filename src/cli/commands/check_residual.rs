@@ -1,6 +1,7 @@
 //! `etalon check --residual` and `etalon compare --residual`: a solution judged without a reference.
 
-use super::check::{Input, exit_code, fit};
+use super::bench::{Input, fit};
+use super::check::exit_code;
 use super::inputs;
 use crate::cli::args::{CheckArgs, CompareArgs, Kernel};
 use crate::cli::console::Console;

@@ -56,8 +56,9 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
     inputs::write(&solution, &write_solution(&outcome.radiosity, names, SolutionFormat::Csv))?;
     watch.lap("hemi-cubes");
 
-    let limits = Limits { max_rms: Some(MAX_RMS), max_top1: None };
-    let question = Question { limits: Some(limits), confidence: told::CONFIDENCE, reflected: true, per_element: false };
+    let limits = Limits::rms(MAX_RMS);
+    let question =
+        Question { limits: Some(limits), confidence: told::CONFIDENCE, reflected: true, ..Question::default() };
     let against = Against::Reference(Box::new(stored));
     let judgement = judge(&outcome.radiosity, &against, None, &receivers, &question)?;
     let verdict = judgement.decision.as_ref().map(|d| d.verdict);
@@ -71,6 +72,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
         split: None,
         breakdown: Some(breakdown),
         contributions: Vec::new(),
+        looks: Vec::new(),
         findings: told::findings(&against),
         notices: Vec::new(),
         settings: settings(&method, kernel, &stored.provenance, &stage),

@@ -2,6 +2,9 @@
 
 mod audit;
 mod audit_tables;
+mod baseline;
+mod bench;
+mod bisect;
 mod check;
 mod check_residual;
 mod converge;
@@ -15,6 +18,8 @@ mod form_factors_check;
 mod form_factors_repair;
 mod form_factors_told;
 mod inputs;
+mod limits;
+mod looks;
 mod machine;
 mod receivers;
 mod reference;
@@ -47,6 +52,8 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Solve(args) => solve::run(args, kernel, console),
         Command::Compare(args) => check::compare(args, cli.global.kernel, console),
         Command::Check(args) => check::check(args, cli.global.kernel, console),
+        Command::Baseline(command) => baseline::run(command, console),
+        Command::Bisect(args) => bisect::run(args, cli.global.kernel, console),
         Command::Converge(ConvergeCommand::Run(args)) => converge::run(args, cli.global.kernel, console),
         Command::Converge(ConvergeCommand::Other(ConvergeOther::Diff(args))) => converge_diff::run(args, console),
         Command::Audit(AuditCommand::Hemicube(args)) => audit::run(args, kernel, console),

@@ -1,9 +1,10 @@
 //! What `--form-factors` and `--patch-system` add to a comparison: where the error comes from.
 
+use super::bench::names_reference;
 use crate::cli::args::CompareArgs;
 use crate::cli::exit::Failure;
 use crate::cli::values::PerLevel;
-use crate::io::{StoredReference, is_reference, read_form_factors_of};
+use crate::io::{StoredReference, read_form_factors_of};
 use crate::metrics::Split;
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
@@ -17,7 +18,7 @@ pub fn check(args: &CompareArgs) -> Result<(), Failure> {
         if args.per == PerLevel::Element {
             return Err(Failure::input(format!("{name} splits the error per patch; leave --per element out")));
         }
-        if !is_reference(&args.reference) {
+        if !names_reference(&args.reference) {
             return Err(Failure::input(format!(
                 "{name} needs a reference directory to judge by, and {} is none; see `etalon reference`",
                 args.reference.display()

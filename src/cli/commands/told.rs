@@ -3,8 +3,9 @@
 use super::check::Asked;
 use super::inputs;
 use crate::cli::args::{CompareArgs, Kernel, OnInconclusive, Truth};
-use crate::cli::values::{PerLevel, StateChoice};
+use crate::cli::values::{Fraction, PerLevel, StateChoice};
 use crate::estimate::{Estimator, Plan};
+use crate::metrics::Verdict;
 use crate::reference::Options;
 use crate::scene::{Finding, Stage};
 use crate::solution::{Provenance, TruthLevel};
@@ -68,11 +69,19 @@ pub fn settings(asked: &Asked, against: &Against) -> Vec<Setting> {
     let args = asked.args;
     let of = Part::Judgement;
     let mut out = vec![Setting::given(of, "--reference", args.reference.display())];
-    let limit = |l: Option<f64>| l.map_or(NONE.to_string(), |l| l.to_string());
-    if asked.limits.is_some() {
-        out.push(Setting::new(of, "--max-rms", limit(asked.limits.and_then(|l| l.max_rms)), NONE));
-        out.push(Setting::new(of, "--max-top1", limit(asked.limits.and_then(|l| l.max_top1)), NONE));
-        out.push(Setting::new(of, "--on-inconclusive", on_inconclusive(asked.on_inconclusive), "exit 3"));
+    if let Some(check) = asked.check {
+        let fraction = |f: Option<Fraction>| f.map_or(NONE.to_string(), |f| f.0.to_string());
+        out.push(Setting::new(of, "--max-rms", fraction(check.max_rms), NONE));
+        out.push(Setting::new(of, "--max-top1", fraction(check.max_top1), NONE));
+        out.push(Setting::new(of, "--max-worst", fraction(check.limits.max_worst), NONE));
+        out.push(Setting::new(of, "--max-energy", fraction(check.limits.max_energy), NONE));
+        let named: Vec<String> = check.limits.named.iter().map(ToString::to_string).collect();
+        out.push(Setting::new(of, "--limit", if named.is_empty() { NONE.into() } else { named.join(", ") }, NONE));
+        let baseline = check.limits.baseline.as_ref().map_or(NONE.to_string(), |p| p.display().to_string());
+        out.push(Setting::new(of, "--baseline", baseline, NONE));
+        out.push(Setting::new(of, "--max-worse", fraction(check.limits.max_worse), NONE));
+        out.push(Setting::new(of, "--until-decided", asked.until_decided, false));
+        out.push(Setting::new(of, "--on-inconclusive", on_inconclusive(check.on_inconclusive), "exit 3"));
     }
     let path = |p: &Option<std::path::PathBuf>| p.as_ref().map_or(NONE.to_string(), |p| p.display().to_string());
     out.push(Setting::new(of, "--before", path(&args.before), NONE));
@@ -153,10 +162,25 @@ pub fn kernel(kernel: Kernel) -> &'static str {
     }
 }
 
+/// A fraction for people: 97.5 %.
+pub(super) fn percent(x: f64) -> String {
+    let text = format!("{:.3}", 100.0 * x);
+    format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// A verdict in a word.
+pub(super) fn verdict(v: Verdict) -> &'static str {
+    match v {
+        Verdict::Pass => "pass",
+        Verdict::Fail => "fail",
+        Verdict::Inconclusive => "inconclusive",
+    }
+}
+
 /// The command that repeats the run.
 pub fn replay(asked: &Asked) -> String {
-    let (args, limits) = (asked.args, asked.limits);
-    let mut words = vec!["etalon".to_string(), if limits.is_some() { "check" } else { "compare" }.into()];
+    let (args, check) = (asked.args, asked.check);
+    let mut words = vec!["etalon".to_string(), if check.is_some() { "check" } else { "compare" }.into()];
     words.push(quoted(&args.solution.display().to_string()));
     let mut option = |name: &str, value: Option<String>| {
         if let Some(v) = value {
@@ -172,15 +196,26 @@ pub fn replay(asked: &Asked) -> String {
     option("--state", (has_scene && args.state != StateChoice::Final).then(|| state(args.state)));
     option("--max-edge", args.max_edge.filter(|_| has_scene).map(|e| e.to_string()));
     option("--truth", args.truth.map(|t| truth(t).to_string()));
-    option("--max-rms", limits.and_then(|l| l.max_rms).map(|x| x.to_string()));
-    option("--max-top1", limits.and_then(|l| l.max_top1).map(|x| x.to_string()));
-    option("--on-inconclusive", asked.on_inconclusive.map(|c| on_inconclusive(Some(c)).to_string()));
+    if let Some(c) = check {
+        let fraction = |f: Option<Fraction>| f.map(|f| f.0.to_string());
+        option("--max-rms", fraction(c.max_rms));
+        option("--max-top1", fraction(c.max_top1));
+        option("--max-worst", fraction(c.limits.max_worst));
+        option("--max-energy", fraction(c.limits.max_energy));
+        c.limits.named.iter().for_each(|l| option("--limit", Some(l.to_string())));
+        option("--baseline", c.limits.baseline.as_ref().map(|p| p.display().to_string()));
+        option("--max-worse", fraction(c.limits.max_worse));
+        option("--on-inconclusive", c.on_inconclusive.map(|c| on_inconclusive(Some(c)).to_string()));
+    }
     option("--confidence", (args.confidence.0 != CONFIDENCE).then(|| args.confidence.0.to_string()));
     option("--per", (args.per == PerLevel::Element).then(|| "element".to_string()));
     option("--kernel", (asked.kernel != Kernel::Auto).then(|| kernel(asked.kernel).to_string()));
     option("--report", args.report.as_ref().map(|p| p.display().to_string()));
     if args.reflected {
         words.push("--reflected".into());
+    }
+    if asked.until_decided {
+        words.push("--until-decided".into());
     }
     words.join(" ")
 }

@@ -21,12 +21,12 @@ impl Bench {
         let bands = stage.band_count();
         // Before any light is reflected there are the lamps alone: the patches that "change most" are lit most.
         let lamps = Radiosity { bands, values: stage.emissions(), std_err: None };
-        let limits = limit.map(|l| Limits { max_rms: Some(l), max_top1: None });
+        let limits = limit.map(Limits::rms);
         Self {
             truth: Against::Reference(Box::new(reference)),
             lamps: Against::Solution(lamps),
             receivers: Receivers::patches(stage),
-            question: Question { limits, confidence, reflected: true, per_element: false },
+            question: Question { limits, confidence, reflected: true, ..Question::default() },
             bands,
         }
     }
