@@ -92,6 +92,9 @@ pub fn json_object(record: &Record) -> Result<Value, ReportError> {
         object.insert("verdict".into(), json!(decision.verdict));
         object.insert("limits".into(), serde_json::to_value(&decision.limits)?);
     }
+    if !record.looks.is_empty() {
+        object.insert("looks".into(), json!(record.looks));
+    }
     object.insert("scene".into(), json!(record.stage.name));
     object.insert("solution".into(), json!(record.solution_name));
     object.insert("truth".into(), json!(record.truth));

@@ -4,22 +4,35 @@ use super::asked::Level;
 use super::format::printable;
 use super::headline::{headline, verdict_word, warnings};
 use super::lines::{MetricLine, WorstLine, metric_lines, worst_lines, worst_title};
+use super::thumbnail::thumbnail;
 use super::{Artifact, Exporter, Extras, ReportError};
 use crate::metrics::Verdict;
 use crate::study::Record;
 use std::fmt::Write;
 
-/// GitHub-flavoured Markdown: verdict, metrics, worst patches, command.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Markdown;
+/// GitHub-flavoured Markdown: verdict, limits drawn, metrics, worst patches, command; and a small picture beside it where
+/// the extras have a view.
+#[derive(Debug, Clone)]
+pub struct Markdown {
+    /// File name of the picture, which lies beside the text.
+    pub picture: String,
+}
 
-impl Exporter for Markdown {
-    fn export(&self, record: &Record, _: &Extras) -> Result<Vec<Artifact>, ReportError> {
-        Ok(vec![Artifact::new("summary.md", markdown(record))])
+impl Default for Markdown {
+    fn default() -> Self {
+        Self { picture: "summary.png".into() }
     }
 }
 
-fn markdown(record: &Record) -> String {
+impl Exporter for Markdown {
+    fn export(&self, record: &Record, extras: &Extras) -> Result<Vec<Artifact>, ReportError> {
+        let picture = thumbnail(record, extras.views, &self.picture)?;
+        let text = markdown(record, picture.as_ref().map(|p| p.name.as_str()));
+        Ok(std::iter::once(Artifact::new("summary.md", text)).chain(picture).collect())
+    }
+}
+
+fn markdown(record: &Record, picture: Option<&str>) -> String {
     let head = headline(record);
     let mut out = format!("### {} {}: {}\n\n", icon(head.verdict), head.word, escape(&record.stage.name));
     let mut push = |text: &str| {
@@ -30,7 +43,15 @@ fn markdown(record: &Record) -> String {
     for (title, text) in warnings(record) {
         push(&format!("> **{}.** {}", escape(&title), escape(&text)));
     }
-    push(&metrics(&metric_lines(record)));
+    let lines = metric_lines(record);
+    let drawn: Vec<String> = lines.iter().filter_map(bar).collect();
+    if !drawn.is_empty() {
+        push(&format!("```text\n{}\n```", drawn.join("\n")));
+    }
+    if let Some(name) = picture {
+        push(&format!("![Reference, solution and signed difference]({})", name.replace(' ', "%20")));
+    }
+    push(&metrics(&lines));
     let worst = worst_lines(record);
     if !worst.is_empty() {
         push(&folded(&worst_title(record), &worst_table(&worst, Level::of(record).noun())));
@@ -41,6 +62,26 @@ fn markdown(record: &Record) -> String {
     }
     let _ = writeln!(out, "Replay: {}", code(&record.replay));
     out
+}
+
+/// Cells of a drawn limit.
+const CELLS: usize = 48;
+
+/// An interval against its limit, drawn in text: it shows also where pictures do not. `None` without a limit.
+fn bar(line: &MetricLine) -> Option<String> {
+    let (e, limit) = (line.estimate?, line.limit_value?);
+    let (least, most) = (e.low.min(0.0), e.high.max(limit) * 1.05);
+    let cell = |x: f64| (((x - least) / (most - least) * (CELLS - 1) as f64).round() as usize).min(CELLS - 1);
+    if most <= least || !most.is_finite() {
+        return None;
+    }
+    let mut cells = [' '; CELLS];
+    cells[cell(e.low)..=cell(e.high)].fill('\u{2500}');
+    cells[cell(limit)] = '\u{2503}';
+    cells[cell(e.value)] = '\u{25cf}';
+    let cells: String = cells.iter().collect();
+    let limit = line.limit.as_deref().unwrap_or_default();
+    Some(format!("{} |{cells}| {}, limit {limit}", key(&line.key), line.value))
 }
 
 fn icon(verdict: Option<Verdict>) -> &'static str {
@@ -124,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_failure_reads_well() {
-        insta::assert_snapshot!(markdown(&with_verdict(Verdict::Fail)));
+        insta::assert_snapshot!(markdown(&with_verdict(Verdict::Fail), None));
     }
 
     #[test]
@@ -132,7 +173,8 @@ mod tests {
         let mut r = with_verdict(Verdict::Fail);
         r.stage.name = "<script>alert(1)</script> | [x](http://y) @somebody `z`".into();
         r.replay = "etalon check ```x```".into();
-        let text = markdown(&r);
+        let text = markdown(&r, Some("a b.png"));
+        assert!(text.contains("](a%20b.png)"), "{text}");
         assert!(!text.contains("<script>") && !text.contains("@somebody") && !text.contains("http://"), "{text}");
         assert!(text.contains("\\[x\\]") && text.contains("\\|"), "{text}");
         assert!(text.contains("````sh\netalon check ```x```\n````"), "{text}");

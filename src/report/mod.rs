@@ -21,6 +21,7 @@ mod split;
 #[cfg(test)]
 mod testing;
 mod text;
+mod thumbnail;
 
 pub use artifact::{Artifact, Exporter, Extras, Phase, ReportError, save};
 pub use changes::change_lines;

@@ -25,7 +25,7 @@ pub use looks::{Decided, Look, Seen, confidence_of_look, until_decided};
 pub use receivers::at_receivers;
 pub use record::{Part, Record, Setting};
 pub use residual::{ResidualRequest, ResidualRun, residual};
-pub use reuse::falls_short;
+pub use reuse::{falls_short, reference_key};
 pub use run::{SolveOutcome, SolveRequest, continuous_reference, reference, reference_on, solve};
 pub use session::Session;
 pub use shoot::{Course, Moments, ShootRequest, begin, shoot, shoot_on};

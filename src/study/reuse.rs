@@ -5,6 +5,7 @@ use crate::raycast::KernelInfo;
 use crate::reference::Options;
 use crate::scene::Stage;
 use crate::solution::TruthLevel;
+use sha2::{Digest, Sha256};
 
 /// What a stored reference lacks to be the answer: a patch-system reference of this stage by this program, kernel,
 /// seed and number of randomisations, sound, with at least as many rays or at most the error asked for.
@@ -62,6 +63,34 @@ pub fn falls_short(
         None if p.rays_per_patch < rays => differs("rays per patch", &p.rays_per_patch.to_string(), &rays.to_string()),
         _ => None,
     }
+}
+
+/// A key that two runs share if the reference of one is the answer to the other: everything that [`falls_short`] looks at,
+/// and the effort asked for. A time limit is no part of it.
+pub fn reference_key(stage: &Stage, options: &Options, kernel: &KernelInfo, truth: TruthLevel) -> String {
+    let plan = &options.plan;
+    let effort = match plan.target_error {
+        Some(target) => format!("error {target:?}"),
+        None => format!("rays {}", plan.rays_per_randomisation() * u64::from(plan.randomisations)),
+    };
+    let mut hash = Sha256::new();
+    hash.update(as_json(stage));
+    for part in [
+        env!("CARGO_PKG_VERSION"),
+        truth.name(),
+        plan.estimator.name(),
+        &effort,
+        &plan.randomisations.to_string(),
+        &options.seed.to_string(),
+        &kernel.name,
+        &kernel.version,
+        kernel.instruction_set.as_deref().unwrap_or_default(),
+    ] {
+        hash.update([0]);
+        hash.update(part.as_bytes());
+    }
+    let hex: String = hash.finalize().iter().take(16).map(|b| format!("{b:02x}")).collect();
+    format!("etalon-reference-{hex}")
 }
 
 fn as_json(stage: &Stage) -> Vec<u8> {

@@ -130,4 +130,6 @@ pub enum Command {
     Setup(SetupCommand),
     /// Ray kernels found, threads, self-test.
     Doctor,
+    /// The JSON Schema of what `check --json` and `compare --json` print.
+    Schema,
 }

@@ -25,8 +25,20 @@ pub struct ReferenceArgs {
     pub rays: RayArgs,
     /// Directory of the reference. While it is computed, DIR.part stands beside it: after an interruption the
     /// same command goes on from there.
-    #[arg(short, long, value_name = "DIR")]
+    // With --print-key there is none, and nobody looks at this value.
+    #[arg(
+        short,
+        long,
+        value_name = "DIR",
+        required = false,
+        required_unless_present = "print_key",
+        default_value_if("print_key", "true", "none")
+    )]
     pub output: PathBuf,
+    /// Compute nothing: print a key that is the same for as long as the stored reference would be, for the cache of a CI
+    /// (scene, state, options, version, ray kernel).
+    #[arg(long)]
+    pub print_key: bool,
     /// Also write bounds on the radiosity of every patch, at 95 % for all together (patch, then low and high of each
     /// band): .csv.
     #[arg(long, value_name = "FILE")]

@@ -8,6 +8,7 @@ use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::io::atomic;
 use crate::metrics::{Limits, Verdict};
+use crate::render::{View, Visibility, fit_camera, resized};
 use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, one_line, text_summary};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
@@ -78,6 +79,36 @@ fn write_only(path: &Path, exporter: &dyn Exporter, record: &Record) -> Result<(
     Ok(())
 }
 
+/// Width and height of the pictures of a comment, pixels.
+const THUMBNAIL: [u32; 2] = [216, 162];
+/// Rays through a pixel of these, along each side.
+const THUMBNAIL_SAMPLES: u32 = 3;
+
+/// The text, and its picture beside it where there is geometry to be seen.
+fn write_markdown(
+    path: &Path,
+    record: &Record,
+    stage: &Stage,
+    kernel: Kernel,
+    console: &Console,
+) -> Result<(), Failure> {
+    let session = open(stage, kernel, console)?;
+    let view = session.map(|s| {
+        let tracer = s.tracer();
+        let fitted = stage.cameras.is_empty();
+        let camera = stage.cameras.first().cloned().unwrap_or_else(|| fit_camera(&tracer));
+        let camera = resized(&camera, fitted, THUMBNAIL);
+        View { visibility: Visibility::cast(&tracer, &camera, THUMBNAIL_SAMPLES), fitted }
+    });
+    let picture = path.with_extension("png");
+    let markdown = Markdown { picture: picture.file_name().unwrap_or_default().to_string_lossy().into_owned() };
+    let files = markdown.export(record, &Extras { views: view.as_slice(), timing: &[] })?;
+    for (file, target) in files.iter().zip([path, &picture]) {
+        inputs::write(target, &file.bytes)?;
+    }
+    Ok(())
+}
+
 /// What was asked for, checked.
 pub struct Asked<'a> {
     pub args: &'a CompareArgs,
@@ -135,7 +166,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
     };
     watch.lap("judging");
     if let Some(path) = &args.markdown {
-        write_only(path, &Markdown, &record)?;
+        write_markdown(path, &record, &bench.stage, kernel, console)?;
     }
     if let Some(folder) = &args.report {
         let session = open(&bench.stage, kernel, console)?;

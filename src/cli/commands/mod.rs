@@ -63,6 +63,10 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Receivers(args) => receivers::run(args, kernel, console),
         Command::Validate(command) => validate::run(command, kernel, console),
         Command::Setup(command) => machine::setup(command, console),
+        Command::Schema => {
+            Console::print(include_str!("../../../references/schema/check.schema.json").trim_end());
+            Ok(super::exit::DONE)
+        }
         Command::Doctor => machine::doctor(console),
     }
 }

@@ -29,6 +29,12 @@ pub fn run(args: &ReferenceArgs, kernel: KernelKind, console: &Console) -> Resul
     let scene = inputs::scene(&args.scene.scene, args.scene.max_edge, console)?;
     let stage = inputs::stage_of(&scene, args.scene.state)?;
     args.bounds.as_deref().map(inputs::check_writable).transpose()?;
+    if args.print_key {
+        let kernels = open_kernels(kernel, &stage)?;
+        let key = study::reference_key(&stage, &options, kernels.kernel.info(), level(args.truth));
+        console.result(&key, &json!({ "key": key, "scene": stage.name, "scene_hash": stage.hash() }));
+        return Ok(exit::DONE);
+    }
     if let Some(stored) = already_there(args, &stage, &options, kernel, console)? {
         let text = text(&stored, &args.output, "is already there in");
         console.result(&text, &summary(&stored, begin.elapsed().as_secs_f64(), true));
@@ -117,10 +123,7 @@ fn already_there(
     };
     let kernels = open_kernels(kernel, stage)?;
     let kernel = kernels.kernel.info();
-    let level = match args.truth {
-        Truth::PatchSystem => TruthLevel::PatchSystem,
-        Truth::Continuous => TruthLevel::Continuous,
-    };
+    let level = level(args.truth);
     match study::falls_short(&stored, stage, options, kernel, level) {
         None => {
             if level == TruthLevel::PatchSystem {
@@ -129,6 +132,13 @@ fn already_there(
             Ok(Some(stored))
         }
         Some(lack) => again(format!("the reference there has {lack}")),
+    }
+}
+
+fn level(truth: Truth) -> TruthLevel {
+    match truth {
+        Truth::PatchSystem => TruthLevel::PatchSystem,
+        Truth::Continuous => TruthLevel::Continuous,
     }
 }
 
