@@ -9,7 +9,7 @@ mod picture;
 use super::laying::Laying;
 use super::{MeshValuesOptions, file_name, shown};
 use crate::io::FileError;
-use crate::io::scene::mesh::{Brought, Keep, bring};
+use crate::io::scene::mesh::{Brought, Keep, Parts, bring, parts};
 use crate::math::{DVec3, area_vector};
 use crate::solution::{MeshValues, ValuesPer};
 use cut::{Chart, by_texels};
@@ -35,7 +35,8 @@ pub(super) fn read(path: &Path, options: &MeshValuesOptions) -> Result<MeshValue
     let picture = Picture::read(path, options.fields.as_deref())?;
     let mesh = bring(mesh_file, Keep::Textures)?;
     let laying = Laying::new(mesh_file, options, mesh.is_gltf(), picture.bands.clone(), ValuesPer::Face);
-    let mut map = Mapping { file: mesh_file, mesh: &mesh, picture: &picture, laying, without_area: 0, empty: 0.0, all: 0.0 };
+    let mut map =
+        Mapping { file: mesh_file, mesh: &mesh, picture: &picture, laying, without_area: 0, empty: 0.0, all: 0.0 };
     for face in 0..mesh.len() {
         map.face(face)?;
     }
@@ -64,9 +65,7 @@ impl Mapping<'_> {
     fn face(&mut self, face: usize) -> Result<(), FileError> {
         let corners = self.laying.placed(&self.mesh.corners(face), || self.mesh.place(face))?;
         let texels = self.in_texels(face)?;
-        let flat = crate::io::scene::mesh::parts(&corners);
-        use crate::io::scene::mesh::Parts;
-        let triangles = match flat {
+        let triangles = match parts(&corners) {
             Parts::Nothing => {
                 self.without_area += 1;
                 return Ok(());
@@ -96,7 +95,9 @@ impl Mapping<'_> {
     /// Texture coordinates in texels: x from the left, y from the top.
     fn in_texels(&self, face: usize) -> Result<Vec<DVec3>, FileError> {
         let uvs = self.mesh.textures(face);
-        if let Some(uv) = uvs.iter().find(|p| !((-SLACK..=1.0 + SLACK).contains(&p.x) && (-SLACK..=1.0 + SLACK).contains(&p.y))) {
+        if let Some(uv) =
+            uvs.iter().find(|p| !((-SLACK..=1.0 + SLACK).contains(&p.x) && (-SLACK..=1.0 + SLACK).contains(&p.y)))
+        {
             let problem = format!("the texture coordinates {} {} lie outside the picture", uv.x, uv.y);
             return self.refuse(face, problem, "unwrap the mesh into 0..1: pictures are not repeated");
         }

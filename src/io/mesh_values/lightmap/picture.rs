@@ -8,8 +8,8 @@ use exr::prelude::{ReadChannels, ReadLayers};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Most texels that are read.
-const MAX_TEXELS: u64 = 1 << 26;
+/// Most samples of all channels that are read: 4096 x 4096 texels of four.
+const MAX_SAMPLES: u64 = 1 << 26;
 
 /// A picture: rows from the top.
 pub(super) struct Picture {
@@ -93,7 +93,7 @@ fn check(path: &Path, meta: &ex::MetaData) -> Result<(), FileError> {
         return refuse("the picture is deep".into(), "save a flat picture");
     };
     let (width, height) = (header.layer_size.0 as u64, header.layer_size.1 as u64);
-    if width.saturating_mul(height).saturating_mul(header.channels.list.len() as u64) > 4 * MAX_TEXELS {
+    if width.saturating_mul(height).saturating_mul(header.channels.list.len() as u64) > MAX_SAMPLES {
         return refuse(format!("{width} x {height} texels are more than can be read"), "save a smaller picture");
     }
     Ok(())
