@@ -304,6 +304,13 @@ const TARGETS: &[Target] = &[
     ("matrix_csv", fuzz::matrix_csv),
     ("matrix_mtx", fuzz::matrix_mtx),
     ("matrix_npz", fuzz::matrix_npz),
+    ("values_ply", fuzz::values_ply),
+    ("values_obj", fuzz::values_obj),
+    ("values_table", fuzz::values_table),
+    ("values_gltf", fuzz::values_gltf),
+    ("values_glb", fuzz::values_glb),
+    ("values_vtu", fuzz::values_vtu),
+    ("values_exr", fuzz::values_exr),
 ];
 
 fn seeds(target: &str) -> Vec<Vec<u8>> {

@@ -2,7 +2,7 @@
 //! endless loop or a gigabyte is not. The tests of the main crate run these on mutated seeds.
 
 use etalon::io::scene::{SceneOptions, open_scene};
-use etalon::io::{StoredReference, read_form_factors, read_solution};
+use etalon::io::{MeshValuesOptions, StoredReference, read_form_factors, read_mesh_values, read_solution};
 use sha2::{Digest, Sha256};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -113,6 +113,49 @@ pub fn matrix_mtx(data: &[u8]) -> bool {
 /// Form factors as npz.
 pub fn matrix_npz(data: &[u8]) -> bool {
     matrix("f.npz", data)
+}
+
+fn values(path: &Path, options: MeshValuesOptions) -> bool {
+    read_mesh_values(path, &options).is_ok()
+}
+
+/// Values on a PLY mesh.
+pub fn values_ply(data: &[u8]) -> bool {
+    values(&file("v.ply", data), MeshValuesOptions::default())
+}
+
+/// Values on an OBJ mesh.
+pub fn values_obj(data: &[u8]) -> bool {
+    values(&file("v.obj", data), MeshValuesOptions::default())
+}
+
+/// A table of values beside an OBJ mesh of one triangle.
+pub fn values_table(data: &[u8]) -> bool {
+    let table = Some(file("v.csv", data));
+    let mesh = file("t.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    values(&mesh, MeshValuesOptions { table, ..MeshValuesOptions::default() })
+}
+
+/// Values on a glTF mesh in JSON.
+pub fn values_gltf(data: &[u8]) -> bool {
+    values(&file("v.gltf", data), MeshValuesOptions::default())
+}
+
+/// Values on a glTF mesh in one binary file.
+pub fn values_glb(data: &[u8]) -> bool {
+    values(&file("v.glb", data), MeshValuesOptions::default())
+}
+
+/// Values on a VTK grid.
+pub fn values_vtu(data: &[u8]) -> bool {
+    values(&file("v.vtu", data), MeshValuesOptions::default())
+}
+
+/// An EXR lightmap on an OBJ mesh of one triangle.
+pub fn values_exr(data: &[u8]) -> bool {
+    let mesh = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    let mesh = Some(file("l.obj", mesh));
+    values(&file("v.exr", data), MeshValuesOptions { mesh, ..MeshValuesOptions::default() })
 }
 
 /// A reference directory with one file replaced: the first byte chooses it, checksums are made to fit.

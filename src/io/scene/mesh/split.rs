@@ -1,10 +1,41 @@
 //! Mesh faces that are not planar or not convex, cut into triangles.
 
-use crate::math::{DVec3, Frame, unit_normal};
+use crate::io::scene::polygon::{Flaw, flaw};
+use crate::math::{DVec3, Frame, diameter, plane_defect, unit_normal};
+
+/// A face as planar convex polygons.
+pub(in crate::io) enum Parts {
+    /// It is one.
+    Whole,
+    /// Triangles, as numbers of its corners, and how far it is off a plane, in the unit of the corners.
+    Triangles(Vec<[usize; 3]>, f64),
+    /// It has no area.
+    Nothing,
+    /// It crosses itself.
+    Crossed,
+}
+
+/// How a face with finite corners falls into planar convex polygons.
+pub(in crate::io) fn parts(corners: &[DVec3]) -> Parts {
+    let off = match flaw(corners) {
+        None => return Parts::Whole,
+        Some(Flaw::NoArea) => return Parts::Nothing,
+        Some(Flaw::NotPlanar(_)) => plane_defect(corners) * diameter(corners),
+        Some(Flaw::NotConvex) => 0.0,
+    };
+    let Some(mut triangles) = ear_numbers(corners) else { return Parts::Crossed };
+    triangles.retain(|t| flaw(&t.map(|i| corners[i])).is_none());
+    Parts::Triangles(triangles, off)
+}
 
 /// Ears cut off one after the other, the first possible one each time: a convex quadrilateral falls into
 /// (0, 1, 2) and (0, 2, 3). `None` if the loop crosses itself.
 pub(in crate::io::scene) fn ears(corners: &[DVec3]) -> Option<Vec<[DVec3; 3]>> {
+    Some(ear_numbers(corners)?.into_iter().map(|t| t.map(|i| corners[i])).collect())
+}
+
+/// The same as numbers of corners.
+fn ear_numbers(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     let normal = unit_normal(corners);
     let along = corners.iter().map(|c| *c - corners[0]).find(|d| d.cross(normal).length() > 0.0)?;
     let frame = Frame::with_x_axis(normal, along);
@@ -16,11 +47,11 @@ pub(in crate::io::scene) fn ears(corners: &[DVec3]) -> Option<Vec<[DVec3; 3]>> {
     let mut triangles = Vec::with_capacity(corners.len() - 2);
     while left.len() > 3 {
         let ear = (1..=left.len()).map(|i| i % left.len()).find(|i| is_ear(&flat, &left, *i))?;
-        triangles.push(around(&left, ear).map(|i| corners[i]));
+        triangles.push(around(&left, ear));
         left.remove(ear);
     }
-    triangles.push([left[0], left[1], left[2]].map(|i| corners[i]));
-    triangles.iter().all(|t| signed(&t.map(|c| frame.to_local(c - corners[0]))) >= 0.0).then_some(triangles)
+    triangles.push([left[0], left[1], left[2]]);
+    triangles.iter().all(|t| signed(&t.map(|i| flat[i])) >= 0.0).then_some(triangles)
 }
 
 /// True if two edges that are no neighbours cross.

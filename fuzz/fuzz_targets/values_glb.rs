@@ -1,0 +1,4 @@
+//! Fuzzes the reader of values on GLB meshes.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| etalon_fuzz::values_glb(data));
