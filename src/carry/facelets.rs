@@ -1,12 +1,10 @@
 //! Their faces as convex pieces of one plane each, with the function that stands on them.
 
-use crate::math::{Bounds, BoxTree, DVec3, area, convex_defect, diameter, ears, plane_defect, unit_normal};
+use crate::math::{Bounds, BoxTree, DVec3, area, diameter, plane_defect, unit_normal};
 use crate::solution::{MeshValues, ValuesPer};
 
 /// Faces further than this share of their diameter from a plane are cut into triangles, as faces of scenes are.
 const PLANE_TOLERANCE: f64 = 1e-6;
-/// Faces that turn back by more than this (sine of the angle) are not convex.
-const CONVEX_TOLERANCE: f64 = 1e-9;
 /// Faces of less area than this share of their squared diameter are lines: nothing stands on them.
 const NO_AREA: f64 = 1e-12;
 
@@ -28,25 +26,18 @@ pub(super) struct Facelets<'a> {
     values: &'a MeshValues,
     list: Vec<Facelet>,
     tree: BoxTree,
-    /// Faces whose outline crosses itself: they are left out.
-    pub crossed: usize,
 }
 
 impl<'a> Facelets<'a> {
     /// The pieces of all faces, wound as written or `turned` around.
     pub fn new(values: &'a MeshValues, turned: bool) -> Self {
-        let (mut list, mut crossed) = (Vec::with_capacity(values.len()), 0);
-        for face in 0..values.len() {
-            match pieces(values, face) {
-                Some(pieces) => list.extend(pieces.into_iter().filter(has_area)),
-                None => crossed += 1,
-            }
-        }
+        let pieces = (0..values.len()).flat_map(|face| pieces(values, face));
+        let mut list: Vec<Facelet> = pieces.filter(has_area).collect();
         if turned {
             list.iter_mut().for_each(Facelet::turn);
         }
         let tree = BoxTree::new(list.iter().map(|f| Bounds::of(&f.corners)).collect());
-        Self { values, list, tree, crossed }
+        Self { values, list, tree }
     }
 
     /// Number of bands.
@@ -118,23 +109,20 @@ fn has_area(f: &Facelet) -> bool {
     area(&f.corners) > NO_AREA * d * d
 }
 
-/// The convex pieces of a face; `None` if its outline crosses itself.
-fn pieces(values: &MeshValues, face: usize) -> Option<Vec<Facelet>> {
+/// The planar pieces of a convex face: itself, or the triangles from its first corner, where it is bent or its values
+/// are linear on them.
+fn pieces(values: &MeshValues, face: usize) -> Vec<Facelet> {
     let corners = values.corners(face);
     let linear = values.per() == ValuesPer::Corner;
-    let flat = || plane_defect(corners) <= PLANE_TOLERANCE && convex_defect(corners) >= -CONVEX_TOLERANCE;
-    if corners.len() > 3 && area(corners) == 0.0 {
-        return Some(Vec::new());
-    }
-    if corners.len() > 3 && (linear || !flat()) {
-        let triangle = |places: [usize; 3]| {
+    if linear || (corners.len() > 3 && plane_defect(corners) > PLANE_TOLERANCE) {
+        let triangle = |k: usize| {
+            let places = [0, k, k + 1];
             let corners = places.map(|i| corners[i]).to_vec();
             Facelet { face, normal: unit_normal(&corners), corners, linear: linear.then_some(places) }
         };
-        return Some(ears(corners)?.into_iter().map(triangle).collect());
+        return (1..corners.len() - 1).map(triangle).collect();
     }
-    let linear = linear.then_some([0, 1, 2]);
-    Some(vec![Facelet { face, normal: unit_normal(corners), corners: corners.to_vec(), linear }])
+    vec![Facelet { face, normal: unit_normal(corners), corners: corners.to_vec(), linear: None }]
 }
 
 #[cfg(test)]
@@ -159,14 +147,13 @@ mod tests {
     }
 
     #[test]
-    fn a_face_that_is_not_convex_is_cut_and_one_that_crosses_itself_left_out() {
+    fn a_bent_face_is_cut_and_a_line_left_out() {
         let mut m = MeshValues::new(vec!["y".into()], ValuesPer::Face);
-        m.push(&[p(0.0, 0.0), p(1.0, 0.0), p(0.2, 0.2), p(0.0, 1.0)], &[1.0]);
-        m.push(&[p(0.0, 0.0), p(2.0, 2.0), p(2.0, 0.0), p(0.0, 1.0)], &[1.0]);
+        m.push(&[p(0.0, 0.0), p(1.0, 0.0), DVec3::new(1.0, 1.0, 0.1), p(0.0, 1.0)], &[1.0]);
         m.push(&[p(0.0, 0.0), p(2.0, 2.0), p(1.0, 1.0)], &[1.0]);
         let facelets = Facelets::new(&m, false);
-        assert_eq!((facelets.list.len(), facelets.crossed), (2, 1));
-        assert!(facelets.list.iter().all(|f| f.face == 0 && f.normal == DVec3::Z));
+        assert_eq!(facelets.list.len(), 2);
+        assert!(facelets.list.iter().all(|f| f.face == 0 && f.corners.len() == 3));
     }
 
     #[test]

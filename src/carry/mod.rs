@@ -13,7 +13,7 @@ mod told;
 
 pub use quantity::{Quantity, Transfer, UnitsError, band_order, select_bands};
 
-use crate::math::{area, compensated_sum};
+use crate::math::{DVec3, area, centroid, compensated_sum, diameter};
 use crate::scene::{Patch, Stage};
 use crate::solution::{MeshValues, Radiosity};
 use facelets::Facelets;
@@ -61,10 +61,8 @@ pub struct Carried {
     pub doubled: f64,
     /// Furthest distance from a patch to a nearest face that was used, metres.
     pub furthest: f64,
-    /// Faces that no patch took anything of, with their area, m^2.
-    pub idle: Vec<(usize, f64)>,
-    /// Faces that were left out because their outline crosses itself.
-    pub crossed: usize,
+    /// Faces that no patch took anything of.
+    pub idle: Vec<IdleFace>,
     /// Number of faces.
     pub faces: usize,
     /// Distance from the middle of the first unmatched patches to the nearest face that looks their way, metres.
@@ -96,7 +94,19 @@ pub struct Unmatched {
     pub nearest: Option<f64>,
 }
 
-/// Carries the values of a mesh onto the patches of a stage.
+/// A face that no patch took anything of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IdleFace {
+    /// Its place among the faces.
+    pub face: usize,
+    /// Its area, m^2.
+    pub area: f64,
+    /// Its middle, metres.
+    pub middle: DVec3,
+}
+
+/// Carries the values of a mesh onto the patches of a stage. Faces are planar and convex; bent ones count as the
+/// triangles from their first corner.
 pub fn carry(values: &MeshValues, stage: &Stage, options: &CarryOptions) -> Carried {
     let diagonal = diagonal(stage);
     let distances = |p: &Patch| Distances {
@@ -120,7 +130,7 @@ pub fn carry(values: &MeshValues, stage: &Stage, options: &CarryOptions) -> Carr
         }
     }
     let mut carried = gather(values, stage, &taken);
-    (carried.turned, carried.would_match_turned, carried.crossed) = (turned, would_match_turned, facelets.crossed);
+    (carried.turned, carried.would_match_turned) = (turned, would_match_turned);
     carried.distances = distances_of(&carried, stage, &facelets, 2.0 * diagonal);
     carried
 }
@@ -141,7 +151,7 @@ fn default_reach(patch: &Patch, diagonal: f64) -> f64 {
     if patch.corners.is_empty() {
         return 0.0;
     }
-    (REACH_OF_PATCH * crate::math::diameter(&patch.corners)).min(REACH_OF_SCENE * diagonal)
+    (REACH_OF_PATCH * diameter(&patch.corners)).min(REACH_OF_SCENE * diagonal)
 }
 
 /// Everything but what depends on the winding.
@@ -152,7 +162,10 @@ fn gather(values: &MeshValues, stage: &Stage, taken: &[Taken]) -> Carried {
     let nothing = || (vec![0.0; bands], vec![0.0; bands]);
     let (means, spreads): (Vec<_>, Vec<_>) =
         taken.iter().map(|t| t.value.clone().unwrap_or_else(nothing)).unzip();
-    let idle = (0..values.len()).filter(|f| !used[*f]).map(|f| (f, area(values.corners(f))));
+    let idle = |face: usize| {
+        let corners = values.corners(face);
+        IdleFace { face, area: area(corners), middle: centroid(corners) }
+    };
     Carried {
         values: Radiosity { bands, values: means.concat(), std_err: None },
         spread: spreads.concat(),
@@ -162,8 +175,7 @@ fn gather(values: &MeshValues, stage: &Stage, taken: &[Taken]) -> Carried {
         would_match_turned: 0,
         doubled: compensated_sum(taken.iter().map(|t| t.doubled)),
         furthest: taken.iter().map(|t| t.furthest).fold(0.0, f64::max),
-        idle: idle.collect(),
-        crossed: 0,
+        idle: (0..values.len()).filter(|f| !used[*f]).map(idle).collect(),
         faces: values.len(),
         distances: Vec::new(),
     }

@@ -1,5 +1,6 @@
 //! What the numbers of a file mean, and the radiosities they stand for.
 
+use crate::math::centroid;
 use crate::scene::Stage;
 use crate::solution::{MeshValues, Radiosity};
 use std::f64::consts::PI;
@@ -61,9 +62,10 @@ impl Transfer {
             return Ok(values);
         }
         let mut decoded = MeshValues::new(values.bands.clone(), values.per());
+        decoded.notices = values.notices.clone();
         for face in 0..values.len() {
-            let linear: Result<Vec<f64>, UnitsError> =
-                values.values(face).iter().map(|v| decode(*v, || format!("face {face}"))).collect();
+            let place = || format!("face {face}, around {:.3?}", centroid(values.corners(face)).to_array());
+            let linear: Result<Vec<f64>, UnitsError> = values.values(face).iter().map(|v| decode(*v, place)).collect();
             decoded.push(values.corners(face), &linear?);
         }
         Ok(decoded)
@@ -139,6 +141,7 @@ pub fn select_bands(values: &MeshValues, order: &[usize]) -> MeshValues {
     let bands = values.bands.len();
     let names = order.iter().map(|k| values.bands[*k].clone()).collect();
     let mut selected = MeshValues::new(names, values.per());
+    selected.notices = values.notices.clone();
     for face in 0..values.len() {
         let places = values.values(face).chunks(bands);
         let chosen: Vec<f64> = places.flat_map(|v| order.iter().map(|k| v[*k])).collect();
@@ -179,7 +182,7 @@ mod tests {
         let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
         m.push(&triangle, &[0.5]);
         m.push(&triangle, &[-0.5]);
-        assert_eq!(Transfer::Srgb.decode_mesh(m).unwrap_err().place, "face 1");
+        assert!(Transfer::Srgb.decode_mesh(m).unwrap_err().place.starts_with("face 1, around [0.333"));
     }
 
     #[test]

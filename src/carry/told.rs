@@ -1,10 +1,10 @@
 //! What people should know of how values were carried.
 
-use super::{Carried, Unmatched};
-use crate::math::compensated_sum;
+use super::{Carried, IdleFace, Unmatched};
+use crate::math::{DVec3, compensated_sum};
 use crate::scene::Stage;
 
-/// So many faces or patches are named; the others are counted.
+/// So many patches are named; the others are counted.
 const NAMED: usize = 10;
 
 impl Carried {
@@ -13,9 +13,6 @@ impl Carried {
         let mut told = Vec::new();
         if self.turned {
             told.push("all faces are wound backwards: they were turned around, since none matched as it is".into());
-        }
-        if self.crossed > 0 {
-            told.push(format!("{} faces have an outline that crosses itself and were left out", self.crossed));
         }
         if self.doubled > 0.0 {
             told.push(format!("{:.4} m^2 are covered by several faces: their values were averaged there", self.doubled));
@@ -37,19 +34,14 @@ impl Carried {
     }
 
     fn idle_notice(&self) -> Option<String> {
-        let mut idle: Vec<&(usize, f64)> = self.idle.iter().filter(|(_, area)| *area > 0.0).collect();
-        if idle.is_empty() {
-            return None;
-        }
-        let total = compensated_sum(idle.iter().map(|(_, a)| *a));
-        idle.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        let named: Vec<String> = idle.iter().take(NAMED).map(|(f, _)| f.to_string()).collect();
-        let most = if idle.len() > NAMED { "the largest: " } else { "" };
+        let mut idle: Vec<&IdleFace> = self.idle.iter().filter(|f| f.area > 0.0).collect();
+        idle.sort_by(|a, b| b.area.total_cmp(&a.area).then(a.face.cmp(&b.face)));
+        let largest = idle.first()?;
+        let total = compensated_sum(idle.iter().map(|f| f.area));
+        let (DVec3 { x, y, z }, of) = (largest.middle, self.faces);
         Some(format!(
-            "{} of {} faces match no patch ({total:.4} m^2; {most}{})",
-            idle.len(),
-            self.faces,
-            named.join(", ")
+            "{} of {of} faces match no patch ({total:.4} m^2), the largest around ({x:.3}, {y:.3}, {z:.3})",
+            idle.len()
         ))
     }
 

@@ -7,6 +7,7 @@ mod folder;
 pub mod image;
 mod journal;
 mod matrix;
+mod mesh_values;
 mod npz;
 mod patches;
 pub mod scene;
@@ -23,7 +24,8 @@ pub use matrix::{
     Level, MatrixFormat, MatrixLayout, MatrixStyle, read_form_factors, read_form_factors_of, write_form_factors,
     write_matrix,
 };
-pub use patches::{PatchFormat, write_patches};
+pub use mesh_values::{MeshValuesOptions, is_mesh_values, read_mesh_values, write_vtu};
+pub use patches::{PatchFormat, write_patches, write_ply_values};
 pub use series::{INDEX as SERIES_INDEX, SeriesWriter, read_series};
 pub use solution::{BandNames, SolutionFile, SolutionFormat, read_solution, write_solution};
 pub use store::{Files, StoredReference, is_reference};

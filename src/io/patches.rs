@@ -5,8 +5,10 @@
 //! with another surface. Absent patches keep their row, with area 0; in meshes they are left out.
 
 use super::FileError;
+use super::scene::mesh::{ERROR_TAIL, STEM};
 use crate::math::{DVec3, centroid};
 use crate::scene::{Patch, Stage};
+use crate::solution::Radiosity;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -38,8 +40,27 @@ pub fn write_patches(stage: &Stage, format: PatchFormat) -> Vec<u8> {
     match format {
         PatchFormat::Csv => csv_table(stage),
         PatchFormat::Obj => obj_mesh(stage).into_bytes(),
-        PatchFormat::Ply => ply_mesh(stage).into_bytes(),
+        PatchFormat::Ply => ply_mesh(stage, &[]).into_bytes(),
     }
+}
+
+/// Radiosities on the patches as a text PLY: faces have double properties `radiosity_<band>` in W/m^2 and, where known,
+/// `radiosity_<band>_std_err`, and the number of the patch. Same solution, same bytes.
+///
+/// # Panics
+/// If the radiosities are not one per patch and band of the stage, which is a mistake of the program.
+pub fn write_ply_values(stage: &Stage, b: &Radiosity) -> Vec<u8> {
+    let bands = &stage.photometry.bands;
+    assert_eq!((b.len(), b.bands), (stage.patch_count(), bands.len()), "radiosities of the patches");
+    let mut columns = Vec::new();
+    for (tail, values) in [("", Some(&b.values)), (ERROR_TAIL, b.std_err.as_ref())] {
+        let Some(values) = values else { continue };
+        for (band, name) in bands.iter().enumerate() {
+            let own: Vec<f64> = values.iter().skip(band).step_by(b.bands).copied().collect();
+            columns.push((format!("{STEM}{}{tail}", word(name)), own));
+        }
+    }
+    ply_mesh(stage, &columns).into_bytes()
 }
 
 /// Columns of the table; `corners` holds `x y z;x y z;...`.
@@ -150,7 +171,8 @@ fn obj_mesh(stage: &Stage) -> String {
     out
 }
 
-fn ply_mesh(stage: &Stage) -> String {
+/// A mesh whose faces have further properties, each with a value for every patch.
+fn ply_mesh(stage: &Stage, columns: &[(String, Vec<f64>)]) -> String {
     let vertices: usize = present(stage).map(|(_, p)| p.corners.len()).sum();
     let mut out = String::from("ply\nformat ascii 1.0\n");
     let _ = writeln!(out, "comment patches of \"{}\", state {}: metres, z up", stage.name.escape_debug(), stage.state);
@@ -158,7 +180,11 @@ fn ply_mesh(stage: &Stage) -> String {
     let _ = writeln!(out, "element vertex {vertices}");
     out.push_str("property double x\nproperty double y\nproperty double z\n");
     let _ = writeln!(out, "element face {}", present(stage).count());
-    out.push_str("property list uchar uint vertex_indices\nproperty uint patch\nend_header\n");
+    out.push_str("property list uchar uint vertex_indices\nproperty uint patch\n");
+    for (name, _) in columns {
+        let _ = writeln!(out, "property double {name}");
+    }
+    out.push_str("end_header\n");
     for (_, patch) in present(stage) {
         for corner in &patch.corners {
             let _ = writeln!(out, "{}", numbers(Some(*corner)).join(" "));
@@ -168,7 +194,11 @@ fn ply_mesh(stage: &Stage) -> String {
     for (number, patch) in present(stage) {
         let k = patch.corners.len();
         let places: Vec<String> = (next..next + k).map(|i| i.to_string()).collect();
-        let _ = writeln!(out, "{k} {} {number}", places.join(" "));
+        let _ = write!(out, "{k} {} {number}", places.join(" "));
+        for (_, values) in columns {
+            let _ = write!(out, " {:?}", values[number]);
+        }
+        out.push('\n');
         next += k;
     }
     out

@@ -1,7 +1,6 @@
 //! Double-precision vectors, frames, convex polygons and compensated sums. Knows nobody.
 
 mod boxes;
-mod ears;
 mod frame;
 mod polygon;
 mod polytope;
@@ -9,7 +8,6 @@ mod quad;
 mod sum;
 
 pub use boxes::{Bounds, BoxTree};
-pub use ears::ears;
 pub use frame::Frame;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use polygon::{

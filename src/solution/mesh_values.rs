@@ -17,6 +17,8 @@ pub enum ValuesPer {
 pub struct MeshValues {
     /// Names of the bands, in the order of the values: `r`, `g`, `b` for colours, `y` for one unnamed value.
     pub bands: Vec<String>,
+    /// What a user should know of how they were read: faces left out, values of few bits.
+    pub notices: Vec<String>,
     per: ValuesPer,
     corners: Vec<DVec3>,
     /// End of each face in `corners`.
@@ -27,7 +29,7 @@ pub struct MeshValues {
 impl MeshValues {
     /// No faces yet.
     pub fn new(bands: Vec<String>, per: ValuesPer) -> Self {
-        Self { bands, per, corners: Vec::new(), ends: Vec::new(), values: Vec::new() }
+        Self { bands, notices: Vec::new(), per, corners: Vec::new(), ends: Vec::new(), values: Vec::new() }
     }
 
     /// Adds a face: its corners in metres, three or more, counter-clockwise seen from the side that radiates; and its

@@ -8,7 +8,7 @@ mod edits;
 mod error;
 mod folder;
 mod lighting;
-mod mesh;
+pub(in crate::io) mod mesh;
 mod photometry;
 mod polygon;
 mod raw;

@@ -16,7 +16,7 @@ type Library = BTreeMap<String, (Mtl, String)>;
 /// Reads an OBJ file and the libraries that it needs.
 pub(super) fn read_obj(bytes: Vec<u8>, near: &Near) -> Checked<Loaded> {
     let source = Source::new(near.path, lossy(bytes));
-    let mut obj = Obj::parse(&source.text).map_err(|e| near.refusal(&source, e))?;
+    let mut obj = Obj::parse(&source.text, near.keep).map_err(|e| near.refusal(&source, e))?;
     if near.spec.material.is_none() && !obj.materials.is_empty() {
         let library = library(&mut obj, &source, near)?;
         obj.mesh.materials = (0..obj.materials.len()).map(|m| material(&obj, m, &library)).collect();

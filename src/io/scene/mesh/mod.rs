@@ -1,7 +1,9 @@
 //! Faces of a surface from a mesh file (OBJ, PLY, glTF), with its materials and groups.
 
 mod adopt;
+mod brought;
 mod gltf;
+mod keep;
 mod library;
 mod model;
 mod mtl;
@@ -18,7 +20,10 @@ use super::polygon::Division;
 use super::source::Source;
 use crate::scene::Face;
 use model::{At, Mesh, MeshFault};
+pub(in crate::io) use brought::{Brought, bring};
+pub(in crate::io) use keep::{ERROR_TAIL, Keep, STEM, band_names, stemmed};
 pub(super) use split::ears;
+pub(in crate::io) use split::{Parts, parts};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -133,12 +138,12 @@ pub(super) fn faces(
     spec: &MeshSpec,
     gathered: &mut Gathered,
 ) -> Checked<(Vec<Face>, Vec<String>)> {
-    let loaded = load(folder, spec)?;
+    let loaded = load(folder, spec, Keep::Shape)?;
     let numbers = adopt::materials(&loaded, spec, gathered)?;
     place::faces(check, &loaded, spec, &numbers, gathered)
 }
 
-fn load(folder: &Folder, spec: &MeshSpec) -> Checked<Loaded> {
+fn load(folder: &Folder, spec: &MeshSpec, keep: Keep) -> Checked<Loaded> {
     let file = &spec.file;
     let bytes = match bytes_of(&file.path) {
         Ok(bytes) => bytes,
@@ -155,12 +160,12 @@ fn load(folder: &Folder, spec: &MeshSpec) -> Checked<Loaded> {
         let message = format!("\"{}\" has no ending that names a mesh format", file.shown.escape_debug());
         return file.refuse(Refusal::Format, message, "give an .obj, .ply, .gltf or .glb file");
     };
-    let near = Near { folder, path: &file.path, spec };
+    let near = Near { folder, path: &file.path, spec, keep };
     match format {
         Format::Obj => library::read_obj(bytes, &near),
         Format::Ply => {
             let source = Source::new(&file.path, String::from_utf8_lossy(ply::text(&bytes)).into_owned());
-            let mesh = ply::parse(&bytes).map_err(|e| near.refusal(&source, e))?;
+            let mesh = ply::parse(&bytes, keep).map_err(|e| near.refusal(&source, e))?;
             Ok(Loaded { mesh, source, format })
         }
         Format::Gltf => {
@@ -175,6 +180,7 @@ struct Near<'a> {
     folder: &'a Folder,
     path: &'a Path,
     spec: &'a MeshSpec<'a>,
+    keep: Keep<'a>,
 }
 
 impl Near<'_> {

@@ -1,5 +1,6 @@
 //! A mesh as its file has it, whatever the format.
 
+use super::keep::Carried;
 use crate::io::scene::check::LARGEST;
 use crate::io::scene::error::{Refusal, SceneFileError};
 use crate::io::scene::polygon::MAX_CORNERS;
@@ -20,8 +21,12 @@ pub(super) struct Mesh {
     pub parts: Vec<String>,
     /// What was left out, without the file name.
     pub notices: Vec<String>,
+    /// What was asked for beside the shape.
+    pub carried: Carried,
     /// All corners, face by face.
     corners: Vec<u32>,
+    /// Texture coordinates of all corners, by number; empty if not kept.
+    textures: Vec<u32>,
 }
 
 /// One face of a mesh.
@@ -49,8 +54,17 @@ pub(super) struct FaceTags {
 impl Mesh {
     /// Corners of a face.
     pub(super) fn corners(&self, face: &MeshFace) -> Vec<DVec3> {
-        let corners = &self.corners[face.start as usize..][..face.count as usize];
-        corners.iter().map(|i| self.vertices[*i as usize]).collect()
+        self.vertex_numbers(face).iter().map(|i| self.vertices[*i as usize]).collect()
+    }
+
+    /// Numbers of the vertices of a face.
+    pub(super) fn vertex_numbers(&self, face: &MeshFace) -> &[u32] {
+        &self.corners[face.start as usize..][..face.count as usize]
+    }
+
+    /// Numbers of the texture coordinates of a face's corners; empty if not kept.
+    pub(super) fn texture_numbers(&self, face: &MeshFace) -> &[u32] {
+        self.textures.get(face.start as usize..(face.start + face.count) as usize).unwrap_or_default()
     }
 
     /// Adds a face; a corner written twice in a row is the same corner.
@@ -59,15 +73,26 @@ impl Mesh {
         corners: impl IntoIterator<Item = Result<u32, MeshFault>>,
         tags: FaceTags,
     ) -> Result<(), MeshFault> {
+        self.add_textured_face(corners.into_iter().map(|c| c.map(|vertex| (vertex, None))), tags)
+    }
+
+    /// The same with the number of each corner's texture coordinates: for all corners of the mesh, or for none.
+    pub(super) fn add_textured_face(
+        &mut self,
+        corners: impl IntoIterator<Item = Result<(u32, Option<u32>), MeshFault>>,
+        tags: FaceTags,
+    ) -> Result<(), MeshFault> {
         let start = self.corners.len();
-        for index in corners {
-            let index = index?;
+        for corner in corners {
+            let (index, texture) = corner?;
             if self.corners.len() == start || self.corners.last() != Some(&index) {
                 self.corners.push(index);
+                self.textures.extend(texture);
             }
         }
         if self.corners.len() > start + 1 && self.corners.last() == self.corners.get(start) {
             self.corners.pop();
+            self.textures.pop();
         }
         let count = self.corners.len() - start;
         let at = || self.place_of(&tags);

@@ -1,5 +1,6 @@
 //! Wavefront OBJ: vertices, faces, groups and materials, with the line of every mistake.
 
+use super::keep::Keep;
 use super::model::{At, FaceTags, Mesh, MeshFault, fault, number, one_line, shown};
 use crate::math::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -21,6 +22,7 @@ pub(super) fn name_in(statement: &str) -> String {
 
 /// Statements without meaning for radiosity, left out with a notice (except those nobody misses).
 const SILENT: [&str; 4] = ["vt", "vn", "s", "vp"];
+const COLOUR_MEND: &str = "write v x y z r g b for every vertex, or give the values in a table (--values FILE)";
 const IGNORED: [&str; 24] = [
     "l",
     "p",
@@ -50,7 +52,7 @@ const IGNORED: [&str; 24] = [
 
 impl Obj {
     /// Parses a file.
-    pub(super) fn parse(text: &str) -> Result<Self, MeshFault> {
+    pub(super) fn parse(text: &str, keep: Keep) -> Result<Self, MeshFault> {
         let mut obj = Self::default();
         let mut numbers = HashMap::new();
         let mut ignored: BTreeMap<&str, usize> = BTreeMap::new();
@@ -61,14 +63,17 @@ impl Obj {
             let mut words = statement.split_ascii_whitespace();
             let Some(keyword) = words.next() else { continue };
             match keyword {
-                "v" => obj.mesh.vertices.push(vertex(line, words)?),
+                "v" => obj.vertex(line, words, keep)?,
+                "vt" if keep == Keep::Textures => obj.mesh.carried.uvs.push(texture_point(line, words)?),
                 "f" => {
                     let number = material.as_mut().map(|(name, line, number)| {
                         *number.get_or_insert_with(|| obj.material(&mut numbers, name, *line))
                     });
                     let tags = FaceTags { at: line as u32, part: None, material: number, group };
                     let vertices = obj.mesh.vertices.len();
-                    obj.mesh.add_face(words.map(|w| corner(line, w, vertices)), tags)?;
+                    let textures = (keep == Keep::Textures).then_some(obj.mesh.carried.uvs.len());
+                    let both = |w| Ok((corner(line, w, vertices)?, textures.map(|n| texture(line, w, n)).transpose()?));
+                    obj.mesh.add_textured_face(words.map(both), tags)?;
                 }
                 "usemtl" => match name_in(&statement) {
                     name if name.is_empty() => return fault(line, "a name is missing", "write it after the keyword"),
@@ -89,9 +94,22 @@ impl Obj {
                 },
             }
         }
+        if !obj.mesh.carried.of_vertices.is_empty() {
+            obj.mesh.carried.bands = ["r", "g", "b"].map(String::from).to_vec();
+        }
         let told = ignored.iter().map(|(statement, n)| format!("{n} statements \"{statement}\" were left out"));
         obj.mesh.notices.extend(told);
         Ok(obj)
+    }
+
+    fn vertex<'w>(&mut self, line: usize, words: impl Iterator<Item = &'w str>, keep: Keep) -> Result<(), MeshFault> {
+        let (place, colour) = vertex(line, words)?;
+        self.mesh.vertices.push(place);
+        if let Keep::Values(_) = keep {
+            let Some(colour) = colour else { return fault(line, "the vertex has no colour", COLOUR_MEND) };
+            self.mesh.carried.of_vertices.extend(colour);
+        }
+        Ok(())
     }
 
     fn material(&mut self, numbers: &mut HashMap<String, u32>, name: &str, line: usize) -> u32 {
@@ -122,19 +140,25 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, s
     })
 }
 
-fn vertex<'w>(line: usize, words: impl Iterator<Item = &'w str>) -> Result<DVec3, MeshFault> {
-    let mut p = [0.0; 3];
+/// The place of a vertex, and its colour where it has one.
+fn vertex<'w>(
+    line: usize,
+    words: impl Iterator<Item = &'w str>,
+) -> Result<(DVec3, Option<[f64; 3]>), MeshFault> {
+    let mut all = [0.0; 7];
     let mut count = 0;
     for word in words {
         let value = number(line, word)?;
-        if count < 3 {
-            p[count] = value;
+        if let Some(place) = all.get_mut(count) {
+            *place = value;
         }
         count += 1;
     }
+    let place = DVec3::new(all[0], all[1], all[2]);
     // Weights and colours may follow.
     match count {
-        3 | 4 | 6 | 7 => Ok(DVec3::from(p)),
+        3 | 4 => Ok((place, None)),
+        6 | 7 => Ok((place, Some([all[count - 3], all[count - 2], all[count - 1]]))),
         _ => fault(line, format!("the vertex has {count} numbers"), "give three: v x y z"),
     }
 }
@@ -162,6 +186,29 @@ fn corner(line: usize, word: &str, vertices: usize) -> Result<u32, MeshFault> {
     Ok(place as u32)
 }
 
+/// Texture coordinates: u and v, perhaps a third number of no meaning for pictures.
+fn texture_point<'w>(line: usize, words: impl Iterator<Item = &'w str>) -> Result<[f64; 2], MeshFault> {
+    let numbers = words.map(|w| number(line, w)).collect::<Result<Vec<_>, _>>()?;
+    match numbers[..] {
+        [u, v] | [u, v, _] => Ok([u, v]),
+        _ => fault(line, format!("the texture point has {} numbers", numbers.len()), "give two: vt u v"),
+    }
+}
+
+/// The number of the texture coordinates of a corner written v/vt or v/vt/vn.
+fn texture(line: usize, word: &str, count: usize) -> Result<u32, MeshFault> {
+    let Some(index) = word.split('/').nth(1).and_then(|t| t.parse::<i64>().ok()) else {
+        let message = format!("the corner \"{}\" has no texture coordinates", shown(word));
+        return fault(line, message, "write v/vt: a lightmap needs them at every corner");
+    };
+    let place = if index > 0 { index - 1 } else { count as i64 + index };
+    if index == 0 || place < 0 || place >= count as i64 {
+        let message = format!("the face names texture point {index}, but {count} are defined above it");
+        return fault(line, message, "texture points count from 1, or back from -1");
+    }
+    Ok(place as u32)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -170,7 +217,7 @@ mod tests {
     fn all_forms_of_corners_are_read() {
         let text = "# a\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 .5 .5 .5\nvt 0 0\nvn 0 0 1\no thing\nusemtl a b\n\
                     f 1/1 2/1 3/1\nf -3//1 \\\n -2//1 -1//1 # end\nf 1/1/1 2/1/1 2/1/1 3/1/1 1/1/1\n";
-        let obj = Obj::parse(text).unwrap();
+        let obj = Obj::parse(text, Keep::Shape).unwrap();
         assert_eq!(obj.mesh.vertices.len(), 3);
         assert_eq!(obj.materials, [("a b".to_string(), 8)]);
         let lines: Vec<usize> = obj.mesh.faces.iter().map(|f| f.tags.at as usize).collect();
@@ -183,7 +230,7 @@ mod tests {
 
     #[test]
     fn mistakes_name_their_line() {
-        let line = |text: &str| Obj::parse(text).unwrap_err().at;
+        let line = |text: &str| Obj::parse(text, Keep::Shape).unwrap_err().at;
         assert_eq!(line("v 0 0 0\nf 1 2 3\n"), At::Line(2));
         assert_eq!(line("v 0 0 0\n\nv 0 zero 0\n"), At::Line(3));
         assert_eq!(line("v 0 0\n"), At::Line(1));

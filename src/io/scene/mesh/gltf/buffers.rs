@@ -61,6 +61,25 @@ impl Component {
     }
 }
 
+/// Numbers of each item of a shape.
+fn width_of(shape: &str) -> usize {
+    match shape {
+        "VEC2" => 2,
+        "VEC3" => 3,
+        "VEC4" => 4,
+        _ => 1,
+    }
+}
+
+/// Numbers that vertices have.
+pub(super) struct Attribute {
+    pub numbers: Vec<f64>,
+    /// How many each vertex has.
+    pub width: usize,
+    /// Steps from 0 to 1, for whole numbers.
+    pub steps: Option<f64>,
+}
+
 impl<'a> Buffers<'a> {
     pub(super) fn new(root: &'a Root, near: &'a Near<'a>, bin: Option<&'a [u8]>) -> Self {
         Self { root, near, bin, loaded: root.buffers.iter().map(|_| None).collect() }
@@ -80,6 +99,24 @@ impl<'a> Buffers<'a> {
             true => at(index, "").with("indices cannot be normalised", "export the mesh again"),
             false => Ok(numbers.into_iter().map(|v| v as u32).collect()),
         }
+    }
+
+    /// Floats or normalised whole numbers of an attribute in one of these shapes.
+    pub(super) fn attribute(&mut self, index: usize, shapes: &[&'static str]) -> Result<Attribute, MeshFault> {
+        let accessor = self.root.accessors.get(index);
+        let own = accessor.and_then(|a| shapes.iter().find(|s| **s == a.shape)).unwrap_or(&shapes[0]);
+        let fits = |c| matches!(c, Component::U8 | Component::U16 | Component::F32);
+        let (numbers, normalised) = self.numbers(index, own, fits)?;
+        let component = accessor.and_then(|a| Component::numbered(a.component_type));
+        let steps = match component {
+            Some(Component::U8) => Some(255.0),
+            Some(Component::U16) => Some(65535.0),
+            _ => None,
+        };
+        if steps.is_some() && !normalised {
+            return at(index, ".normalized").with("whole numbers that are not normalised", "set \"normalized\": true");
+        }
+        Ok(Attribute { numbers, width: width_of(own), steps })
     }
 
     /// All numbers of an accessor, and whether they are normalised.
@@ -103,9 +140,9 @@ impl<'a> Buffers<'a> {
         }
         let Some(component) = Component::numbered(accessor.component_type).filter(|c| allowed(*c)) else {
             let message = format!("the component type {} cannot be used here", accessor.component_type);
-            return at(index, ".componentType").with(message, "positions are floats, indices unsigned whole numbers");
+            return at(index, ".componentType").with(message, "positions are floats, indices unsigned whole numbers, colours either");
         };
-        let width = if shape == "VEC3" { 3 } else { 1 };
+        let width = width_of(shape);
         let (bytes, stride) = self.bytes(index, accessor, width * component.size())?;
         let scale = |(v, one): (f64, f64)| if accessor.normalized { (v / one).max(-1.0) } else { v };
         let mut numbers = Vec::with_capacity(accessor.count as usize * width);

@@ -4,6 +4,7 @@
 //! reflectance of 0.7 would come out as 0.699999988, and refuses files that lack data nobody needs here.
 
 mod buffers;
+mod carried;
 mod container;
 mod json;
 mod materials;
@@ -11,6 +12,7 @@ mod nodes;
 mod primitives;
 
 use super::Near;
+use super::keep::Keep;
 use super::model::{At, FaceTags, Mesh, MeshFault, one_line, shown};
 use crate::io::scene::error::Refusal;
 use crate::io::scene::folder::lossy;
@@ -76,6 +78,7 @@ struct Builder<'a> {
     root: &'a Root,
     buffers: Buffers<'a>,
     mesh: Mesh,
+    keep: Keep<'a>,
     /// Primitives of points and lines.
     thin: usize,
 }
@@ -83,7 +86,7 @@ struct Builder<'a> {
 fn mesh_of(root: &Root, near: &Near, file: &str, bin: Option<&[u8]>) -> Result<Mesh, MeshFault> {
     let mut mesh = Mesh::default();
     mesh.materials = materials::materials(root, file);
-    let mut builder = Builder { root, buffers: Buffers::new(root, near, bin), mesh, thin: 0 };
+    let mut builder = Builder { root, buffers: Buffers::new(root, near, bin), mesh, keep: near.keep, thin: 0 };
     let shown = nodes::shown(root)?;
     for node in &shown {
         builder.node(node)?;
@@ -125,6 +128,7 @@ impl Builder<'_> {
             return MeshFault::new(part(".material"), message).mend("export the mesh again");
         }
         let positions = self.buffers.positions(*positions)?;
+        self.carry(primitive, positions.len(), place)?;
         let corners = match primitive.indices {
             Some(indices) => self.buffers.indices(indices)?,
             None => (0..positions.len() as u32).collect(),
@@ -140,6 +144,7 @@ impl Builder<'_> {
         let first = self.mesh.vertices.len() as u32;
         self.mesh.vertices.extend(positions.iter().map(|p| shown.placement.transform_point3(DVec3::from(*p))));
         self.mesh.parts.push(format!("nodes[{}], {place}, triangle", shown.node));
+        let textured = self.keep == Keep::Textures;
         // A mirror turns the winding round: turned back, the front stays the front.
         let mirrored = shown.placement.determinant() < 0.0;
         for (number, [a, b, c]) in triangles.into_iter().enumerate() {
@@ -148,14 +153,14 @@ impl Builder<'_> {
             let tags = FaceTags { at: number as u32, part, material, group };
             let order = if mirrored { [a, c, b] } else { [a, b, c] };
             let corners = order.map(|k| match corners[k] {
-                v if (v as usize) < positions.len() => Ok(first + v),
+                v if (v as usize) < positions.len() => Ok((first + v, textured.then_some(first + v))),
                 v => {
                     let message = format!("the triangle names vertex {v}, but there are {}", positions.len());
                     MeshFault::new(At::Part(format!("{place}, triangle {number}")), message)
                         .mend("vertices count from 0")
                 }
             });
-            self.mesh.add_face(corners, tags)?;
+            self.mesh.add_textured_face(corners, tags)?;
         }
         Ok(())
     }
@@ -176,7 +181,7 @@ impl Builder<'_> {
             (instanced, "instanced nodes are shown once"),
             (lights, "lights are left out: surfaces are lit by emitting surfaces"),
             (morphed, "morph targets are left out"),
-            (coloured, "vertex colours are left out: they are no reflectances"),
+            (if self.keep == Keep::Shape { coloured } else { 0 }, "vertex colours are left out: they are no reflectances"),
             (others, "further scenes are left out"),
         ];
         let told = told.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect::<Vec<_>>();

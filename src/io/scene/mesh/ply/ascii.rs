@@ -33,6 +33,7 @@ fn row(element: &Element, which: usize, line: usize, text: &str, sink: &mut Sink
         None => fault(line, format!("the element \"{}\" has too few numbers", element.name), "complete the line"),
     };
     let mut point = [0.0; 3];
+    let mut values = vec![0.0; sink.kept.width(which)];
     let mut corners = Vec::new();
     for (place, property) in element.properties.iter().enumerate() {
         let wanted = &sink.wanted[which];
@@ -41,6 +42,9 @@ fn row(element: &Element, which: usize, line: usize, text: &str, sink: &mut Sink
             let word = word()?;
             if let Some(axis) = axis {
                 point[axis] = number(line, word)?;
+            }
+            if let Some((slot, full)) = sink.kept.slot(which, place) {
+                values[slot] = value(line, word)? / full;
             }
             continue;
         }
@@ -57,9 +61,17 @@ fn row(element: &Element, which: usize, line: usize, text: &str, sink: &mut Sink
         return fault(line, format!("the element \"{}\" has too many numbers", element.name), "split the line");
     }
     match sink.wanted[which] {
-        Wanted::Vertex(_) => sink.vertex(point, || At::Line(line)),
-        Wanted::Face(_) => sink.face(&corners, line as u32),
+        Wanted::Vertex(_) => sink.vertex(point, &values, || At::Line(line)),
+        Wanted::Face(_) => sink.face(&corners, &values, line as u32),
         Wanted::Nothing => Ok(()),
+    }
+}
+
+/// Any number, also one that is not finite: the sink says where.
+fn value(line: usize, word: &str) -> Result<f64, MeshFault> {
+    match word.parse() {
+        Ok(v) => Ok(v),
+        Err(_) => fault(line, format!("\"{}\" is not a number", shown(word)), "give a decimal number"),
     }
 }
 

@@ -37,11 +37,15 @@ fn row<const LITTLE: bool>(
     let at = || At::Part(format!("{} {number}", element.name));
     let cut = || MeshFault::new(at(), "the file ends within the element").mend("is the file cut short?");
     let mut point = [0.0; 3];
+    let mut values = vec![0.0; sink.kept.width(which)];
     let mut corners = Vec::new();
     for (place, property) in element.properties.iter().enumerate() {
         let wanted = &sink.wanted[which];
         let Some(count) = property.count else {
             let Some(value) = rest.number::<LITTLE>(property.kind) else { return cut() };
+            if let Some((slot, full)) = sink.kept.slot(which, place) {
+                values[slot] = value / full;
+            }
             if let Wanted::Vertex(places) = wanted {
                 places.iter().zip(&mut point).filter(|(p, _)| **p == place).for_each(|(_, c)| *c = value);
             }
@@ -61,8 +65,8 @@ fn row<const LITTLE: bool>(
         }
     }
     match sink.wanted[which] {
-        Wanted::Vertex(_) => sink.vertex(point, at),
-        Wanted::Face(_) => sink.face(&corners, number as u32),
+        Wanted::Vertex(_) => sink.vertex(point, &values, at),
+        Wanted::Face(_) => sink.face(&corners, &values, number as u32),
         Wanted::Nothing => Ok(()),
     }
 }

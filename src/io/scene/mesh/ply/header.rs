@@ -50,7 +50,16 @@ impl Kind {
         }
     }
 
-    fn is_whole(self) -> bool {
+    /// What stands for 1 in colours; `None` for numbers that mean themselves.
+    pub(super) fn full(self) -> Option<f64> {
+        match self {
+            Self::U8 => Some(255.0),
+            Self::U16 => Some(65535.0),
+            _ => None,
+        }
+    }
+
+    pub(super) fn is_whole(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
     }
 }
@@ -83,7 +92,7 @@ impl Element {
         self.properties.iter().any(|p| matches!(p.name.as_str(), "red" | "r" | "diffuse_red"))
     }
 
-    fn scalar(&self, name: &str) -> Option<usize> {
+    pub(super) fn scalar(&self, name: &str) -> Option<usize> {
         self.properties.iter().position(|p| p.name == name && p.count.is_none())
     }
 }

@@ -3,11 +3,15 @@
 mod ascii;
 mod binary;
 mod header;
+mod kept;
 
+use super::keep::Keep;
 use super::model::{At, FaceTags, Mesh, MeshFault, within_reach};
 use crate::io::scene::check::LARGEST;
+use crate::io::scene::error::Refusal;
 use crate::math::DVec3;
 use header::{Encoding, Header};
+use kept::Kept;
 
 /// The part of a file that has lines: all of it, or the header of a binary one.
 pub(super) fn text(bytes: &[u8]) -> &[u8] {
@@ -18,9 +22,9 @@ pub(super) fn text(bytes: &[u8]) -> &[u8] {
 }
 
 /// Parses a file.
-pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, MeshFault> {
+pub(super) fn parse(bytes: &[u8], keep: Keep) -> Result<Mesh, MeshFault> {
     let header = Header::parse(bytes)?;
-    let mut sink = Sink::new(&header)?;
+    let mut sink = Sink::new(&header, keep)?;
     match header.encoding {
         Encoding::Ascii => ascii::read(&header, bytes, &mut sink)?,
         Encoding::LittleEndian => binary::read::<true>(&header, bytes, &mut sink)?,
@@ -40,6 +44,9 @@ enum Wanted {
 struct Sink {
     mesh: Mesh,
     wanted: Vec<Wanted>,
+    kept: Kept,
+    /// True if colours are not told of.
+    silent: bool,
     /// Corners as read, face by face: vertices may follow the faces.
     corners: Vec<i64>,
     /// Per face: end of its corners, and its place.
@@ -49,31 +56,38 @@ struct Sink {
 }
 
 impl Sink {
-    fn new(header: &Header) -> Result<Self, MeshFault> {
+    fn new(header: &Header, keep: Keep) -> Result<Self, MeshFault> {
         let wanted = header.wanted()?;
+        let mut kept = kept::choose(header, keep)?;
         let binary = header.encoding != Encoding::Ascii;
         let parts = if binary { vec!["face".to_string()] } else { Vec::new() };
         let mut mesh = Mesh::default();
         mesh.parts = parts;
-        Ok(Self { mesh, wanted, corners: Vec::new(), faces: Vec::new(), binary })
+        mesh.carried.bands = std::mem::take(&mut kept.bands);
+        mesh.notices.extend(kept.notice.take());
+        let silent = keep != Keep::Shape;
+        Ok(Self { mesh, wanted, kept, silent, corners: Vec::new(), faces: Vec::new(), binary })
     }
 
-    fn vertex(&mut self, p: [f64; 3], at: impl Fn() -> At) -> Result<(), MeshFault> {
+    fn vertex(&mut self, p: [f64; 3], values: &[f64], at: impl Fn() -> At) -> Result<(), MeshFault> {
         if let Some(v) = p.iter().find(|v| within_reach(**v).is_none()) {
             let message = format!("a coordinate is {v}, which is not finite or beyond {LARGEST:e}");
             return MeshFault::new(at(), message).mend("give finite numbers");
         }
         self.mesh.vertices.push(DVec3::from(p));
+        self.mesh.carried.of_vertices.extend_from_slice(sound(values, at)?);
         Ok(())
     }
 
     /// The corners of a face, `at` its line or number.
-    fn face(&mut self, corners: &[i64], at: u32) -> Result<(), MeshFault> {
+    fn face(&mut self, corners: &[i64], values: &[f64], at: u32) -> Result<(), MeshFault> {
         if corners.len() < 3 {
             let place = self.mesh.place_of(&self.tags(at));
             let message = format!("the face has {} corners", corners.len());
             return MeshFault::new(place, message).mend("give three or more; edges and points cannot radiate");
         }
+        let values = sound(values, || self.mesh.place_of(&self.tags(at)))?;
+        self.mesh.carried.of_faces.extend_from_slice(values);
         self.corners.extend_from_slice(corners);
         self.faces.push((self.corners.len(), at));
         Ok(())
@@ -99,11 +113,21 @@ impl Sink {
             start = end;
         }
         let coloured: Vec<&str> = header.elements.iter().filter(|e| e.has_colours()).map(|e| e.name.as_str()).collect();
-        if !coloured.is_empty() {
+        if !coloured.is_empty() && !self.silent {
             let which = coloured.join(" and ");
             self.mesh.notices.push(format!("colours ({which}) are left out: they are no reflectances"));
         }
         Ok(self.mesh)
+    }
+}
+
+/// Values that are all finite.
+fn sound(values: &[f64], at: impl Fn() -> At) -> Result<&[f64], MeshFault> {
+    match values.iter().find(|v| !v.is_finite()) {
+        None => Ok(values),
+        Some(v) => MeshFault::new(at(), format!("a value is {v}"))
+            .of(Refusal::Number)
+            .mend("give finite numbers, or leave faces without a value out of the file"),
     }
 }
 

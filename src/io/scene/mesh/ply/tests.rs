@@ -40,7 +40,7 @@ fn binary(little: bool) -> Vec<u8> {
 
 #[test]
 fn all_encodings_give_the_same_mesh() {
-    let plain = parse(TEXT.as_bytes()).unwrap();
+    let plain = parse(TEXT.as_bytes(), Keep::Shape).unwrap();
     let p = |x: f64, y: f64| DVec3::new(x, y, 0.0);
     assert_eq!(
         loops(&plain),
@@ -50,13 +50,13 @@ fn all_encodings_give_the_same_mesh() {
     assert_eq!(plain.notices.len(), 1);
     for little in [true, false] {
         let bytes = binary(little);
-        let mesh = parse(&bytes).unwrap();
+        let mesh = parse(&bytes, Keep::Shape).unwrap();
         assert_eq!(loops(&mesh), loops(&plain));
         assert_eq!(mesh.place_of(&mesh.faces[1].tags), At::Part("face 1".into()));
         assert!(text(&bytes).ends_with(b"end_header\n") && text(TEXT.as_bytes()).len() == TEXT.len());
     }
     let crlf = TEXT.replace('\n', "\r\n");
-    assert_eq!(loops(&parse(crlf.as_bytes()).unwrap()), loops(&plain));
+    assert_eq!(loops(&parse(crlf.as_bytes(), Keep::Shape).unwrap()), loops(&plain));
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn every_truncation_is_a_fault_and_never_a_panic() {
     for bytes in [TEXT.trim_end().as_bytes().to_vec(), binary(true), binary(false)] {
         // The text's last number may lose a digit and stay one.
         for end in 0..bytes.len() - 2 {
-            assert!(parse(&bytes[..end]).is_err(), "{end}");
+            assert!(parse(&bytes[..end], Keep::Shape).is_err(), "{end}");
         }
     }
 }
