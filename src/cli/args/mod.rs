@@ -1,7 +1,9 @@
 //! The command line as typed. Plans are made of it in `commands`; nothing here does any work.
 
 mod audit;
+mod brought;
 mod converge;
+mod convert;
 mod form_factors;
 mod judge;
 mod rays;
@@ -13,7 +15,9 @@ mod solve;
 mod suites;
 
 pub use audit::{AuditArgs, AuditCommand, AuditForm};
+pub use brought::{BroughtArgs, Up};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
+pub use convert::ConvertArgs;
 pub use form_factors::{
     FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
 };
@@ -94,6 +98,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// The same with limits and a verdict.
     Check(CheckArgs),
+    /// A solution on a mesh of its own, or in other units, as radiosities of the patches of a scene.
+    Convert(ConvertArgs),
     /// Convergence curves: error against shots, rays and seconds, of any methods and of series of snapshots.
     Converge(ConvergeCommand),
     /// What a method is wrong about, why, and what would mend it.

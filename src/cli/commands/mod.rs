@@ -2,6 +2,7 @@
 
 mod audit;
 mod audit_tables;
+mod brought;
 mod check;
 mod check_residual;
 mod converge;
@@ -9,6 +10,7 @@ mod converge_diff;
 mod converge_references;
 mod converge_refine;
 mod converge_told;
+mod convert;
 mod demo;
 mod form_factors;
 mod form_factors_check;
@@ -47,6 +49,7 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Solve(args) => solve::run(args, kernel, console),
         Command::Compare(args) => check::compare(args, cli.global.kernel, console),
         Command::Check(args) => check::check(args, cli.global.kernel, console),
+        Command::Convert(args) => convert::run(args, console),
         Command::Converge(ConvergeCommand::Run(args)) => converge::run(args, cli.global.kernel, console),
         Command::Converge(ConvergeCommand::Other(ConvergeOther::Diff(args))) => converge_diff::run(args, console),
         Command::Audit(AuditCommand::Hemicube(args)) => audit::run(args, kernel, console),
