@@ -13,7 +13,7 @@ pub(super) struct Flat {
     pub facelet: u32,
     /// Convex loop in the plane of the polygon.
     pub polygon: Vec<DVec3>,
-    /// Box of the loop.
+    /// Box of the part of it that meets the polygon, with room for rounding.
     pub bounds: Bounds,
 }
 
@@ -111,7 +111,8 @@ mod tests {
 
     #[test]
     fn parts_are_told_apart_by_who_covers_them() {
-        let cells = divide(square(0.0, 0.0, 3.0), &[flat(0, square(0.0, 0.0, 2.0)), flat(1, square(1.0, 1.0, 2.0))], 0.0);
+        let cells =
+            divide(square(0.0, 0.0, 3.0), &[flat(0, square(0.0, 0.0, 2.0)), flat(1, square(1.0, 1.0, 2.0))], 0.0);
         assert!((area_where(&cells, 0) - 2.0).abs() < 1e-14);
         assert!((area_where(&cells, 1) - 6.0).abs() < 1e-14);
         assert!((area_where(&cells, 2) - 1.0).abs() < 1e-14);
@@ -119,8 +120,7 @@ mod tests {
 
     #[test]
     fn many_faces_are_divided_like_few() {
-        let grid: Vec<Flat> =
-            (0..2500).map(|k| flat(k, square(f64::from(k % 50), f64::from(k / 50), 1.0))).collect();
+        let grid: Vec<Flat> = (0..2500).map(|k| flat(k, square(f64::from(k % 50), f64::from(k / 50), 1.0))).collect();
         let cells = divide(square(0.0, 0.0, 60.0), &grid, 1e-12);
         assert!((area_where(&cells, 1) - 2500.0).abs() < 1e-9);
         assert!((area_where(&cells, 0) - 1100.0).abs() < 1e-9);

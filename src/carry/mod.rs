@@ -160,8 +160,7 @@ fn gather(values: &MeshValues, stage: &Stage, taken: &[Taken]) -> Carried {
     let mut used = vec![false; values.len()];
     taken.iter().flat_map(|t| &t.faces).for_each(|f| used[*f] = true);
     let nothing = || (vec![0.0; bands], vec![0.0; bands]);
-    let (means, spreads): (Vec<_>, Vec<_>) =
-        taken.iter().map(|t| t.value.clone().unwrap_or_else(nothing)).unzip();
+    let (means, spreads): (Vec<_>, Vec<_>) = taken.iter().map(|t| t.value.clone().unwrap_or_else(nothing)).unzip();
     let idle = |face: usize| {
         let corners = values.corners(face);
         IdleFace { face, area: area(corners), middle: centroid(corners) }

@@ -85,7 +85,7 @@ pub(super) fn take(patch: &Patch, facelets: &Facelets, distances: Distances) -> 
     taken
 }
 
-/// Faces of the plane of a patch, laid into it and cut to it.
+/// Faces of the plane of a patch, laid into it.
 fn coplanar(patch: &Patch, facelets: &Facelets, tolerance: f64) -> Vec<Flat> {
     let origin = patch.corners[0];
     let mut near = Vec::new();
@@ -99,18 +99,18 @@ fn coplanar(patch: &Patch, facelets: &Facelets, tolerance: f64) -> Vec<Flat> {
     let flat = |k: u32| {
         let face = facelets.get(k);
         let laid: Vec<DVec3> = face.corners.iter().map(lay).collect();
-        let polygon = intersect_convex(&laid, &patch.corners);
+        let common = intersect_convex(&laid, &patch.corners);
         let away = |p: &DVec3| (*p - face.corners[0]).dot(face.normal).abs() > tolerance;
-        let apart = polygon.len() < 3 || polygon.iter().any(away);
-        (!apart).then(|| Flat { facelet: k, bounds: Bounds::of(&polygon), polygon })
+        let apart = common.len() < 3 || common.iter().any(away);
+        // The face itself and not what is common: edges that clipping left have a length, but no direction.
+        (!apart).then(|| Flat { facelet: k, bounds: Bounds::of(&common).grown(tolerance), polygon: laid })
     };
     near.into_iter().filter_map(flat).collect()
 }
 
 /// The parts that nothing covers, without the seams between faces.
 fn without_seams(bare: Vec<Cell>, whole: f64, tolerance: f64) -> Vec<Vec<DVec3>> {
-    let (seams, open): (Vec<_>, Vec<_>) =
-        bare.into_iter().map(|c| c.polygon).partition(|p| is_sliver(p, tolerance));
+    let (seams, open): (Vec<_>, Vec<_>) = bare.into_iter().map(|c| c.polygon).partition(|p| is_sliver(p, tolerance));
     let narrow: f64 = seams.iter().map(|p| area(p)).sum();
     if narrow > SEAMS * whole { open.into_iter().chain(seams).collect() } else { open }
 }

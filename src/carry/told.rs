@@ -15,7 +15,10 @@ impl Carried {
             told.push("all faces are wound backwards: they were turned around, since none matched as it is".into());
         }
         if self.doubled > 0.0 {
-            told.push(format!("{:.4} m^2 are covered by several faces: their values were averaged there", self.doubled));
+            told.push(format!(
+                "{:.4} m^2 are covered by several faces: their values were averaged there",
+                self.doubled
+            ));
         }
         told.extend(self.near_notice());
         told.extend(self.idle_notice());
@@ -56,7 +59,9 @@ impl Carried {
         (!unmatched.is_empty()).then(|| {
             let (n, first) = (unmatched.len(), first.join(", "));
             let plural = if n == 1 { "patch has" } else { "patches have" };
-            format!("{n} {plural} no face to take a value from ({area:.4} m^2, {share:.2} % of the area): {first}{more}")
+            format!(
+                "{n} {plural} no face to take a value from ({area:.4} m^2, {share:.2} % of the area): {first}{more}"
+            )
         })
     }
 }

@@ -48,10 +48,8 @@ fn per_patch(path: &Path, args: &BroughtArgs, stage: &Stage) -> Result<Brought, 
     let transfer = Transfer::from(args.transfer);
     let as_they_are = (quantity, transfer, args.factor) == (Quantity::Radiosity, Transfer::Linear, 1.0);
     if is_reference(path) && !as_they_are {
-        let message = format!(
-            "{}: a reference holds radiosities; leave --quantity, --factor and --transfer out",
-            path.display()
-        );
+        let message =
+            format!("{}: a reference holds radiosities; leave --quantity, --factor and --transfer out", path.display());
         return Err(Failure::input(message).at(path.display().to_string()));
     }
     let values = check::fit(path, Input::read(path)?, &Receivers::patches(stage), false, stage)?;
@@ -118,7 +116,9 @@ fn in_bands(path: &Path, values: MeshValues, args: &BroughtArgs, stage: &Stage) 
     let bands = &stage.photometry.bands;
     let Some(order) = band_order(&values.bands, bands, !args.fields.is_empty()) else {
         let problem = format!("has bands {}, but the scene has {}", values.bands.join(", "), bands.join(", "));
-        return Err(FileError::new(path, problem).mend("name the field of each band of the scene with --fields").into());
+        return Err(FileError::new(path, problem)
+            .mend("name the field of each band of the scene with --fields")
+            .into());
     };
     let as_it_is = order.iter().enumerate().all(|(k, from)| k == *from);
     Ok(if as_it_is { values } else { select_bands(&values, &order) })
@@ -129,8 +129,10 @@ fn unmatched(path: &Path, told: &str, values: &MeshValues, carried: &Carried, st
     let mut mend = String::from("mend the mesh, or give --skip-unmatched to leave them out");
     if carried.would_match_turned > 0 {
         let n = carried.would_match_turned;
-        mend = format!("faces wound the other way would match {n} of them: a face radiates to the side from which its \
-                        corners run counter-clockwise; {mend}");
+        mend = format!(
+            "faces wound the other way would match {n} of them: a face radiates to the side from which its \
+                        corners run counter-clockwise; {mend}"
+        );
     } else if carried.of_scene().unmatched > 0.5 {
         let (lo, hi) = stage.bounds();
         let (low, high) = bounds(values);

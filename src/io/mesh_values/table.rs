@@ -48,11 +48,7 @@ pub(super) fn read(path: &Path, fields: Option<&[String]>) -> Result<Table, File
 }
 
 /// The empty table that a header asks for, and the columns of its bands.
-fn header(
-    path: &Path,
-    head: &csv::StringRecord,
-    fields: Option<&[String]>,
-) -> Result<(Table, Vec<usize>), FileError> {
+fn header(path: &Path, head: &csv::StringRecord, fields: Option<&[String]>) -> Result<(Table, Vec<usize>), FileError> {
     let refuse = |problem: String, mend: &str| Err(FileError::new(path, problem).at("line 1").mend(mend));
     let of_faces = match head.get(0).unwrap_or_default() {
         "face" => true,

@@ -91,7 +91,9 @@ mod tests {
         let (mut sum, mut flat, mut count) = (0.0, 0.0, 0);
         assert!(by_texels(&t, |column, row, piece| {
             for q in &piece {
-                assert!((q.x - column as f64 - 0.5).abs() < 0.5 + 1e-12 && (q.y - row as f64 - 0.5).abs() < 0.5 + 1e-12);
+                assert!(
+                    (q.x - column as f64 - 0.5).abs() < 0.5 + 1e-12 && (q.y - row as f64 - 0.5).abs() < 0.5 + 1e-12
+                );
             }
             flat += area(&piece);
             sum += area(&piece.iter().map(|q| chart.at(*q)).collect::<Vec<_>>());

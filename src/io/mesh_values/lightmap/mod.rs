@@ -35,7 +35,8 @@ pub(super) fn read(path: &Path, options: &MeshValuesOptions) -> Result<MeshValue
     let picture = Picture::read(path, options.fields.as_deref())?;
     let mesh = bring(mesh_file, Keep::Textures)?;
     let laying = Laying::new(mesh_file, options, mesh.is_gltf(), picture.bands.clone(), ValuesPer::Face);
-    let mut map = Mapping { file: mesh_file, mesh: &mesh, picture: &picture, laying, without_area: 0, empty: 0.0, all: 0.0 };
+    let mut map =
+        Mapping { file: mesh_file, mesh: &mesh, picture: &picture, laying, without_area: 0, empty: 0.0, all: 0.0 };
     for face in 0..mesh.len() {
         map.face(face)?;
     }
@@ -96,7 +97,9 @@ impl Mapping<'_> {
     /// Texture coordinates in texels: x from the left, y from the top.
     fn in_texels(&self, face: usize) -> Result<Vec<DVec3>, FileError> {
         let uvs = self.mesh.textures(face);
-        if let Some(uv) = uvs.iter().find(|p| !((-SLACK..=1.0 + SLACK).contains(&p.x) && (-SLACK..=1.0 + SLACK).contains(&p.y))) {
+        if let Some(uv) =
+            uvs.iter().find(|p| !((-SLACK..=1.0 + SLACK).contains(&p.x) && (-SLACK..=1.0 + SLACK).contains(&p.y)))
+        {
             let problem = format!("the texture coordinates {} {} lie outside the picture", uv.x, uv.y);
             return self.refuse(face, problem, "unwrap the mesh into 0..1: pictures are not repeated");
         }

@@ -30,7 +30,11 @@ pub(super) fn read<'a>(document: &Document<'a>, piece: Node<'a, 'a>, points: usi
     let numbers = wholes(document, connectivity, None, points, "a point")?;
     let ends = wholes(document, offsets, Some(count), numbers.len() + 1, "an end within the connectivity")?;
     if let Some(k) = (1..ends.len()).find(|k| ends[*k] < ends[k - 1]) {
-        return document.refuse(offsets.node, &format!("the offset of cell {k} is less than the one before"), "sort them");
+        return document.refuse(
+            offsets.node,
+            &format!("the offset of cell {k} is less than the one before"),
+            "sort them",
+        );
     }
     Ok(Cells { connectivity: numbers, ends, types: types_read.into_iter().map(|t| t as u8).collect() })
 }

@@ -31,7 +31,9 @@ pub(super) fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<Split<'a>, FileE
         return Ok(Split { xml: String::from_utf8_lossy(bytes), appended: None });
     };
     let at = |problem: &str| {
-        Err(FileError::new(path, problem).at("<AppendedData>").mend("is the file cut short? Save it again, or as ascii"))
+        Err(FileError::new(path, problem)
+            .at("<AppendedData>")
+            .mend("is the file cut short? Save it again, or as ascii"))
     };
     let Some(tag_end) = find(b">", open) else { return at("the tag does not end") };
     let tag = String::from_utf8_lossy(&bytes[open..tag_end]).replace('\'', "\"");

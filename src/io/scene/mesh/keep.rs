@@ -49,7 +49,10 @@ pub(in crate::io) const ERROR_TAIL: &str = "_std_err";
 
 /// The fields of a file that hold radiosities of etalon's own writing, in their order.
 pub(in crate::io) fn stemmed<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
-    names.filter(|n| n.len() > STEM.len() && n.starts_with(STEM) && !n.ends_with(ERROR_TAIL)).map(String::from).collect()
+    names
+        .filter(|n| n.len() > STEM.len() && n.starts_with(STEM) && !n.ends_with(ERROR_TAIL))
+        .map(String::from)
+        .collect()
 }
 
 /// What is told about values of few bits.

@@ -141,10 +141,7 @@ fn statements(text: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, s
 }
 
 /// The place of a vertex, and its colour where it has one.
-fn vertex<'w>(
-    line: usize,
-    words: impl Iterator<Item = &'w str>,
-) -> Result<(DVec3, Option<[f64; 3]>), MeshFault> {
+fn vertex<'w>(line: usize, words: impl Iterator<Item = &'w str>) -> Result<(DVec3, Option<[f64; 3]>), MeshFault> {
     let mut all = [0.0; 7];
     let mut count = 0;
     for word in words {

@@ -140,7 +140,8 @@ impl<'a> Buffers<'a> {
         }
         let Some(component) = Component::numbered(accessor.component_type).filter(|c| allowed(*c)) else {
             let message = format!("the component type {} cannot be used here", accessor.component_type);
-            return at(index, ".componentType").with(message, "positions are floats, indices unsigned whole numbers, colours either");
+            return at(index, ".componentType")
+                .with(message, "positions are floats, indices unsigned whole numbers, colours either");
         };
         let width = width_of(shape);
         let (bytes, stride) = self.bytes(index, accessor, width * component.size())?;

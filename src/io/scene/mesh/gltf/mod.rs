@@ -181,7 +181,10 @@ impl Builder<'_> {
             (instanced, "instanced nodes are shown once"),
             (lights, "lights are left out: surfaces are lit by emitting surfaces"),
             (morphed, "morph targets are left out"),
-            (if self.keep == Keep::Shape { coloured } else { 0 }, "vertex colours are left out: they are no reflectances"),
+            (
+                if self.keep == Keep::Shape { coloured } else { 0 },
+                "vertex colours are left out: they are no reflectances",
+            ),
             (others, "further scenes are left out"),
         ];
         let told = told.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect::<Vec<_>>();
