@@ -36,6 +36,7 @@
 
 pub mod api;
 pub mod audit;
+pub mod carry;
 pub mod cli;
 pub mod doctor;
 pub mod estimate;

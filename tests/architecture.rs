@@ -16,6 +16,7 @@ const MAP: &[(&str, &[&str])] = &[
     ("estimate", &["math", "stats", "sampling", "scene", "solution", "raycast", "formfactor"]),
     ("doctor", &["math", "stats", "sampling", "scene", "raycast", "estimate"]),
     ("solver", &["math", "solution"]),
+    ("carry", &["math", "sampling", "scene", "solution"]),
     ("reference", &["*", "-doctor"]),
     ("methods", &["*", "-reference", "-doctor"]),
     ("metrics", &["math", "stats", "solution", "view"]),

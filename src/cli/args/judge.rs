@@ -1,5 +1,6 @@
 //! `etalon compare` and `etalon check`.
 
+use super::brought::BroughtArgs;
 use super::reference::Truth;
 use crate::cli::values::{Fraction, PerLevel, Span, StateChoice};
 use crate::metrics::Limit;
@@ -59,6 +60,9 @@ pub struct CompareArgs {
     /// Write GitHub-flavoured Markdown here.
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
+    /// A solution as another program wrote it.
+    #[command(flatten)]
+    pub brought: BroughtArgs,
     /// Without a reference.
     #[command(flatten)]
     pub residual: ResidualArgs,

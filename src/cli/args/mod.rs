@@ -2,7 +2,9 @@
 
 mod audit;
 mod baseline;
+mod brought;
 mod converge;
+mod convert;
 mod form_factors;
 mod judge;
 mod rays;
@@ -15,7 +17,9 @@ mod suites;
 
 pub use audit::{AuditArgs, AuditCommand, AuditForm};
 pub use baseline::{BaselineChangeArgs, BaselineCommand, BaselineSaveArgs, BisectArgs};
+pub use brought::{BroughtArgs, Up};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
+pub use convert::ConvertArgs;
 pub use form_factors::{
     FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
 };
@@ -102,6 +106,8 @@ pub enum Command {
     /// A check for `git bisect run`: exit 0 good, 1 bad, 125 skip (no verdict, or no solution to read); 128 ends the
     /// bisection. Takes what check takes; better references are computed while it is open (--max-time).
     Bisect(BisectArgs),
+    /// A solution on a mesh of its own, or in other units, as radiosities of the patches of a scene.
+    Convert(ConvertArgs),
     /// Convergence curves: error against shots, rays and seconds, of any methods and of series of snapshots.
     Converge(ConvergeCommand),
     /// What a method is wrong about, why, and what would mend it.

@@ -1,11 +1,11 @@
 //! What is judged and what judges, read and fitted to each other.
 
-use super::{inputs, split};
+use super::{brought, inputs, split};
 use crate::cli::args::{CompareArgs, Truth};
 use crate::cli::console::Console;
 use crate::cli::exit::Failure;
 use crate::cli::values::PerLevel;
-use crate::io::{SolutionFile, StoredReference, certified, certified_names, is_reference, read_solution};
+use crate::io::{SolutionFile, StoredReference, certified, certified_names, is_mesh_values, is_reference, read_solution};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
 use crate::study::{Against, Receivers, anonymous_stage};
@@ -36,6 +36,8 @@ pub struct Bench {
     pub before: Option<Against>,
     /// Elements instead of patches.
     pub per_element: bool,
+    /// What the reader has to know of how the solution was read.
+    pub notices: Vec<String>,
 }
 
 impl Bench {
@@ -49,14 +51,14 @@ impl Bench {
         let truth = check_truth(args, &reference)?;
         let stage = stage(args, &reference, console)?;
         let per_element = args.per == PerLevel::Element;
-        let receivers = if per_element { Receivers::elements(&stage) } else { Receivers::patches(&stage) };
-        let solution = fit(&args.solution, Input::read(&args.solution)?, &receivers, per_element, &stage)?;
+        let mut receivers = if per_element { Receivers::elements(&stage) } else { Receivers::patches(&stage) };
+        let (solution, notices) = solution(args, &stage, &mut receivers)?;
         let against = match reference {
             Input::Reference(r) => Against::Reference(r),
             Input::Solution(s) => Against::Solution(s.fit(&receivers.photometry.bands, &receivers.present())?),
         };
         let before = args.before.as_deref().map(|path| before(path, &receivers, judging)).transpose()?;
-        Ok(Self { truth, stage, receivers, solution, against, before, per_element })
+        Ok(Self { truth, stage, receivers, solution, against, before, per_element, notices })
     }
 
     /// The reference, where it is one and not a solution.
@@ -108,6 +110,30 @@ impl Input {
         }
         Ok(self)
     }
+}
+
+/// The solution as radiosities of the receivers. Patches that it has no value for (`--skip-unmatched`) take no part.
+fn solution(args: &CompareArgs, stage: &Stage, receivers: &mut Receivers) -> Result<(Radiosity, Vec<String>), Failure> {
+    let (path, brought) = (&args.solution, &args.brought);
+    if stage.facets.is_empty() || args.per == PerLevel::Element {
+        if is_mesh_values(path) || brought.changes_anything() {
+            let message = format!(
+                "{}: a solution on a mesh of its own or in other units is judged per patch of a scene; give --scene and \
+                 leave out --per element, or convert it with `etalon convert`",
+                path.display()
+            );
+            return Err(Failure::input(message).at(path.display().to_string()));
+        }
+        let per_element = args.per == PerLevel::Element;
+        return Ok((fit(path, Input::read(path)?, receivers, per_element, stage)?, Vec::new()));
+    }
+    let brought = brought::radiosity(path, brought, stage)?;
+    for (area, matched) in receivers.areas.iter_mut().zip(&brought.matched) {
+        if !matched {
+            *area = 0.0;
+        }
+    }
+    Ok((brought.radiosity, brought.notices))
 }
 
 /// The truth the reference holds, by name; refuses another one being asked for.

@@ -181,6 +181,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
 /// What the reader has to know beside the numbers.
 fn notices(asked: &Asked, bench: &Bench, looks: &[Look]) -> Vec<String> {
     let mut out = told::notices(asked.args, &bench.against);
+    out.extend(bench.notices.iter().cloned());
     out.extend(looks::told(looks));
     out
 }

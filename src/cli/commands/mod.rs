@@ -5,6 +5,7 @@ mod audit_tables;
 mod baseline;
 mod bench;
 mod bisect;
+mod brought;
 mod check;
 mod check_residual;
 mod converge;
@@ -12,6 +13,7 @@ mod converge_diff;
 mod converge_references;
 mod converge_refine;
 mod converge_told;
+mod convert;
 mod demo;
 mod form_factors;
 mod form_factors_check;
@@ -54,6 +56,7 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Check(args) => check::check(args, cli.global.kernel, console),
         Command::Baseline(command) => baseline::run(command, console),
         Command::Bisect(args) => bisect::run(args, cli.global.kernel, console),
+        Command::Convert(args) => convert::run(args, console),
         Command::Converge(ConvergeCommand::Run(args)) => converge::run(args, cli.global.kernel, console),
         Command::Converge(ConvergeCommand::Other(ConvergeOther::Diff(args))) => converge_diff::run(args, console),
         Command::Audit(AuditCommand::Hemicube(args)) => audit::run(args, kernel, console),
