@@ -4,6 +4,7 @@ use super::SceneOptions;
 use super::alone::{is_mesh, read_mesh};
 use super::check::known_names;
 use super::error::{Refusal, SceneFileError};
+use super::mitsuba::{is_mitsuba, read_mitsuba};
 use super::read::{parse_text, read_scene};
 use super::view3d::{is_view3d, read_view3d};
 use crate::scene::Scene;
@@ -70,6 +71,7 @@ pub fn open_scene(spec: &str, options: &SceneOptions) -> Result<Scene, SceneFile
         return match path {
             _ if is_mesh(path) => read_mesh(path, options),
             _ if is_view3d(path) => read_view3d(path, options),
+            _ if is_mitsuba(path) => read_mitsuba(path, options),
             _ => read_scene(path, options),
         };
     };

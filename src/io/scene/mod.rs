@@ -1,4 +1,5 @@
-//! The scene file `etalon-scene/1` (TOML), the meshes it names (OBJ with MTL, PLY, glTF), and View3D input.
+//! The scene file `etalon-scene/1` (TOML), the meshes it names (OBJ with MTL, PLY, glTF), and
+//! scenes of other programs: View3D, Mitsuba 3.
 
 mod alone;
 mod builtin;
@@ -9,7 +10,9 @@ mod error;
 mod folder;
 mod lighting;
 mod mesh;
+mod mitsuba;
 mod photometry;
+mod pieces;
 mod polygon;
 mod raw;
 mod read;
