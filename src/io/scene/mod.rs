@@ -1,5 +1,5 @@
 //! The scene file `etalon-scene/1` (TOML), the meshes it names (OBJ with MTL, PLY, glTF), and
-//! scenes of other programs: View3D, Mitsuba 3.
+//! scenes of other programs: View3D, Mitsuba 3, Radiance.
 
 mod alone;
 mod builtin;
@@ -14,6 +14,7 @@ mod mitsuba;
 mod photometry;
 mod pieces;
 mod polygon;
+mod radiance;
 mod raw;
 mod read;
 mod source;

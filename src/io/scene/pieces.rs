@@ -1,8 +1,12 @@
 //! Polygons of foreign scenes made fit: planar convex ones stay whole, others fall into triangles.
 
 use super::mesh::ears;
+use super::photometry::Materials;
 use super::polygon::{Flaw, MAX_CORNERS, flaw};
-use crate::math::DVec3;
+use crate::math::{DVec3, area};
+use crate::scene::Material;
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
 /// What becomes of a polygon.
 pub(super) enum Cut {
@@ -24,8 +28,13 @@ pub(super) fn cut(corners: Vec<DVec3>) -> Cut {
     match flaw(&corners) {
         None => Cut::Whole(corners),
         Some(Flaw::NoArea) => Cut::NoArea,
-        Some(_) => match ears(&corners) {
+        Some(flaw_of_it) => match ears(&corners) {
             Some(triangles) => {
+                let sum: f64 = triangles.iter().map(|t| area(t)).sum();
+                // A seam in the wrong place would be counted twice; bent polygons have no one area to compare with.
+                if flaw_of_it == Flaw::NotConvex && (sum / area(&corners) - 1.0).abs() > 1e-6 {
+                    return Cut::Hopeless("crosses itself");
+                }
                 let sound: Vec<Vec<DVec3>> =
                     triangles.into_iter().map(|t| t.to_vec()).filter(|t| flaw(t).is_none()).collect();
                 if sound.is_empty() { Cut::NoArea } else { Cut::Split(sound) }
@@ -35,10 +44,40 @@ pub(super) fn cut(corners: Vec<DVec3>) -> Cut {
     }
 }
 
+/// Materials of a foreign scene: one for each name with its values. Where a name stands for several, `#NUMBER` is added.
+#[derive(Default)]
+pub(super) struct Palette {
+    pub materials: Materials,
+    known: HashMap<(String, Vec<u64>), u32>,
+}
+
+impl Palette {
+    /// The number of a material.
+    pub(super) fn number(&mut self, wanted: &str, reflectance: [f64; 3], emission: [f64; 3]) -> u32 {
+        let wanted: String = wanted.chars().take(150).map(|c| if c.is_control() { '_' } else { c }).collect();
+        let bits = reflectance.iter().chain(&emission).map(|v| v.to_bits()).collect();
+        let materials = &mut self.materials;
+        *self.known.entry((wanted.clone(), bits)).or_insert_with(|| {
+            let values = |name: &str| {
+                let (reflectance, emission) = (reflectance.to_vec(), emission.to_vec());
+                Material { name: name.into(), reflectance, emission }
+            };
+            let mut name = wanted.clone();
+            if !materials.add(values(&name)) {
+                name = format!("{wanted}#{}", materials.list.len() + 1);
+                while !materials.add(values(&name)) {
+                    name.push('\'');
+                }
+            }
+            materials.number(&name).unwrap_or_default()
+        })
+    }
+}
+
 /// Names of surfaces, each one once.
 #[derive(Default)]
 pub(super) struct SurfaceNames {
-    taken: std::collections::HashSet<String>,
+    taken: HashSet<String>,
     /// How many had to be changed.
     pub renamed: usize,
 }
@@ -62,7 +101,7 @@ impl SurfaceNames {
 }
 
 /// Name of a scene after its file.
-pub(super) fn scene_name(path: &std::path::Path) -> String {
+pub(super) fn scene_name(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     stem.chars().take(60).map(|c| if c.is_control() { '_' } else { c }).collect()
 }

@@ -46,7 +46,7 @@ pub(super) fn read_mitsuba(path: &Path, options: &SceneOptions) -> Checked<Scene
         name: scene_name(path),
         photometry: Photometry::rec709(),
         enclosure: None,
-        materials: parts.materials.list,
+        materials: parts.palette.materials.list,
         surfaces: parts.surfaces,
         absent: Vec::new(),
         edits: Vec::new(),

@@ -9,20 +9,19 @@ use crate::io::scene::check::{Check, Checked, LARGEST};
 use crate::io::scene::error::Refusal;
 use crate::io::scene::folder::Folder;
 use crate::io::scene::mesh::{self, Fallback, Gathered, MeshFile, MeshSpec};
-use crate::io::scene::photometry::Materials;
-use crate::io::scene::pieces::{Cut, SurfaceNames, cut};
+use crate::io::scene::pieces::{Cut, Palette, SurfaceNames, cut};
 use crate::io::scene::polygon::Division;
 use crate::math::DVec3;
-use crate::scene::{Face, MAX_PATCHES, Material, PointLight, Surface};
+use crate::scene::{Face, MAX_PATCHES, PointLight, Surface};
 use crate::view::{Camera, Photometry};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
 
 /// What a file is read into.
 #[derive(Default)]
 pub(super) struct Parts {
-    pub materials: Materials,
+    pub palette: Palette,
     pub surfaces: Vec<Surface>,
     pub lights: Vec<PointLight>,
     pub cameras: Vec<Camera>,
@@ -39,8 +38,6 @@ struct Gatherer<'a> {
     division: Division<'a>,
     parts: Parts,
     names: SurfaceNames,
-    /// Materials by name and values.
-    known: HashMap<(String, Vec<u64>), u32>,
     faces: u64,
     tally: Tally,
 }
@@ -63,7 +60,6 @@ pub(super) fn gather(tree: &Tree, folder: &Folder, division: Division) -> Checke
         division,
         parts: Parts::default(),
         names: SurfaceNames::default(),
-        known: HashMap::new(),
         faces: 0,
         tally: Tally::default(),
     };
@@ -202,32 +198,11 @@ impl Gatherer<'_> {
     fn materials_of(&mut self, shape: &Shape) -> (u32, Option<u32>) {
         let Bsdf { name, reflectance, two_sided, .. } = &shape.bsdf;
         let Some(area) = &shape.area else {
-            let both = self.material(name, *reflectance, [0.0; 3]);
+            let both = self.parts.palette.number(name, *reflectance, [0.0; 3]);
             return (both, two_sided.then_some(both));
         };
-        let front = self.material(&format!("{name}, emitting"), *reflectance, area.emission);
-        (front, two_sided.then(|| self.material(name, *reflectance, [0.0; 3])))
-    }
-
-    fn material(&mut self, wanted: &str, reflectance: [f64; 3], emission: [f64; 3]) -> u32 {
-        let wanted: String = wanted.chars().take(150).map(|c| if c.is_control() { '_' } else { c }).collect();
-        let bits = reflectance.iter().chain(&emission).map(|v| v.to_bits()).collect();
-        let materials = &mut self.parts.materials;
-        *self.known.entry((wanted.clone(), bits)).or_insert_with(|| {
-            let mut name = wanted.clone();
-            let values = |name: &str| Material {
-                name: name.into(),
-                reflectance: reflectance.to_vec(),
-                emission: emission.to_vec(),
-            };
-            if !materials.add(values(&name)) {
-                name = format!("{wanted}#{}", materials.list.len() + 1);
-                while !materials.add(values(&name)) {
-                    name.push('\'');
-                }
-            }
-            materials.number(&name).unwrap_or_default()
-        })
+        let front = self.parts.palette.number(&format!("{name}, emitting"), *reflectance, area.emission);
+        (front, two_sided.then(|| self.parts.palette.number(name, *reflectance, [0.0; 3])))
     }
 
     /// Outlines of a shape in its own space with their groups, and the names of these.
@@ -262,7 +237,8 @@ impl Gatherer<'_> {
             division: Division { max_edge: None, ..self.division },
         };
         let rgb = Photometry::rec709();
-        let Parts { materials, notices, .. } = &mut self.parts;
+        let Parts { palette, notices, .. } = &mut self.parts;
+        let materials = &mut palette.materials;
         let mut gathered = Gathered { materials, notices, bands: &rgb.bands, rgb: true };
         let (faces, groups) = mesh::faces(check, self.folder, &spec, &mut gathered)?;
         Ok((faces.into_iter().map(|f| (f.vertices, f.group)).collect(), groups))

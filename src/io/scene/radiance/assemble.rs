@@ -4,18 +4,17 @@ use super::material::{Meaning, Modifiers};
 use super::parse::{Primitive, shown};
 use crate::io::scene::check::{Check, Checked};
 use crate::io::scene::error::Refusal;
-use crate::io::scene::photometry::Materials;
-use crate::io::scene::pieces::{Cut, SurfaceNames, cut};
+use crate::io::scene::pieces::{Cut, Palette, SurfaceNames, cut};
 use crate::io::scene::polygon::Division;
 use crate::math::DVec3;
-use crate::scene::{Face, MAX_PATCHES, Material, Surface};
-use std::collections::{BTreeMap, HashMap};
+use crate::scene::{Face, MAX_PATCHES, Surface};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// What a file is read into.
 #[derive(Default)]
 pub(super) struct Parts {
-    pub materials: Materials,
+    pub palette: Palette,
     pub surfaces: Vec<Surface>,
     pub notices: Vec<String>,
 }
@@ -26,8 +25,6 @@ struct Assembly<'a> {
     modifiers: Modifiers,
     parts: Parts,
     names: SurfaceNames,
-    /// Materials by name and values: a name may be defined anew.
-    known: HashMap<(String, Vec<u64>), u32>,
     faces: u64,
     /// What was mended or left out: how often, and where first.
     tally: BTreeMap<String, (usize, Range<usize>)>,
@@ -42,7 +39,6 @@ pub(super) fn assemble(check: Check, primitives: &[Primitive], division: Divisio
         modifiers: Modifiers::default(),
         parts: Parts::default(),
         names: SurfaceNames::default(),
-        known: HashMap::new(),
         faces: 0,
         tally: BTreeMap::new(),
         two_sided: 0,
@@ -93,9 +89,9 @@ impl Assembly<'_> {
                     let what = format!("the plastic \"{name}\" is even here: \"{}\" is left out", shown(&pattern));
                     self.count(what, primitive);
                 }
-                (self.material(&primitive.modifier, reflectance, [0.0; 3]), true)
+                (self.parts.palette.number(&primitive.modifier, reflectance, [0.0; 3]), true)
             }
-            Some(Meaning::Light { emission }) => (self.material(&primitive.modifier, [0.0; 3], emission), false),
+            Some(Meaning::Light { emission }) => (self.parts.palette.number(&primitive.modifier, [0.0; 3], emission), false),
         };
         self.two_sided += usize::from(two_sided);
         let mut faces = Vec::new();
@@ -114,13 +110,6 @@ impl Assembly<'_> {
             self.parts.surfaces.push(Surface { name, object, faces, groups: Vec::new(), from_mesh: true });
         }
         Ok(())
-    }
-
-    fn material(&mut self, wanted: &str, reflectance: [f64; 3], emission: [f64; 3]) -> u32 {
-        let wanted: String = wanted.chars().take(150).map(|c| if c.is_control() { '_' } else { c }).collect();
-        let bits = reflectance.iter().chain(&emission).map(|v| v.to_bits()).collect();
-        let materials = &mut self.parts.materials;
-        *self.known.entry((wanted.clone(), bits)).or_insert_with(|| materials.give(&wanted, reflectance, emission))
     }
 
     /// The polygon as convex pieces; corners written twice in a row are one.

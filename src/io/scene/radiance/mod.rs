@@ -22,8 +22,8 @@ use crate::view::Photometry;
 use std::path::Path;
 
 /// Luminance weights of Radiance's red, green and blue: primaries (0.640, 0.330), (0.290, 0.600), (0.150, 0.060) and
-/// the white of equal energy.
-const WEIGHTS: [f64; 3] = [0.265_074_126_775_161_35, 0.670_114_631_191_816_7, 0.064_811_242_033_021_95];
+/// the white (0.3333, 0.3333).
+const WEIGHTS: [f64; 3] = [0.265_074_126_460_265, 0.670_114_630_510_670_2, 0.064_811_243_029_064_81];
 
 /// True if the ending of a file name is that of a Radiance scene.
 pub(super) fn is_radiance(path: &Path) -> bool {
@@ -47,7 +47,7 @@ pub(super) fn read_radiance(path: &Path, options: &SceneOptions) -> Checked<Scen
         name: scene_name(path),
         photometry: Photometry { weights: WEIGHTS.to_vec(), ..Photometry::rec709() },
         enclosure: None,
-        materials: parts.materials.list,
+        materials: parts.palette.materials.list,
         surfaces: parts.surfaces,
         absent: Vec::new(),
         edits: Vec::new(),
@@ -67,10 +67,10 @@ mod tests {
 
     #[test]
     fn the_weights_are_those_of_the_primaries() {
-        // Columns: XYZ of each primary of luminance 1; their mixture is to be X = Y = Z = 1.
+        // Columns: XYZ of each primary of luminance 1; their mixture is to be white.
         let xyz = |x: f64, y: f64| DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
         let mixture = DMat3::from_cols(xyz(0.640, 0.330), xyz(0.290, 0.600), xyz(0.150, 0.060));
-        let weights = mixture.inverse() * DVec3::ONE;
+        let weights = mixture.inverse() * xyz(0.3333, 0.3333);
         assert!((weights - DVec3::from(WEIGHTS)).length() < 1e-12, "{weights:?}");
     }
 }

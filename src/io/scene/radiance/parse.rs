@@ -7,17 +7,16 @@ use crate::io::scene::error::Refusal;
 use std::ops::Range;
 
 /// Types of surfaces.
-pub(super) const SURFACES: [&str; 12] = [
-    "polygon", "sphere", "bubble", "cone", "cup", "cylinder", "tube", "ring", "source", "instance", "mesh", "line",
+pub(super) const SURFACES: [&str; 11] = [
+    "polygon", "sphere", "bubble", "cone", "cup", "cylinder", "tube", "ring", "source", "instance", "mesh",
 ];
 /// Types of materials, mixtures, patterns and textures.
-const MODIFIERS: [&str; 51] = [
+const MODIFIERS: [&str; 48] = [
     "plastic", "metal", "trans", "plastic2", "metal2", "trans2", "ashik2", "dielectric", "interface", "glass", "light",
     "illum", "glow", "spotlight", "mirror", "mist", "prism1", "prism2", "antimatter", "BRTDfunc", "plasfunc",
     "metfunc", "transfunc", "plasdata", "metdata", "transdata", "BSDF", "aBSDF", "WGMDfunc", "mixfunc", "mixdata",
     "mixpict", "mixtext", "brightfunc", "brightdata", "brighttext", "colorfunc", "colordata", "colorpict", "colortext",
-    "texfunc", "texdata", "spectrum", "specfile", "specfunc", "specdata", "specpict", "texture", "directdata1",
-    "directfunc1", "alias",
+    "texfunc", "texdata", "spectrum", "specfile", "specfunc", "specdata", "specpict", "alias",
 ];
 
 /// One primitive of the file.
