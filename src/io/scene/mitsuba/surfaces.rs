@@ -169,7 +169,8 @@ impl Gatherer<'_> {
         }
         // A lamp shines from its front alone, so its back is a face of its own.
         if let Some(back) = back.filter(|b| *b != front) {
-            let turned = |f: &Face| Face { material: back, vertices: f.vertices.iter().rev().copied().collect(), ..f.clone() };
+            let turned =
+                |f: &Face| Face { material: back, vertices: f.vertices.iter().rev().copied().collect(), ..f.clone() };
             let backs: Vec<Face> = faces.iter().map(turned).collect();
             faces.extend(backs);
         }

@@ -91,7 +91,9 @@ impl Assembly<'_> {
                 }
                 (self.parts.palette.number(&primitive.modifier, reflectance, [0.0; 3]), true)
             }
-            Some(Meaning::Light { emission }) => (self.parts.palette.number(&primitive.modifier, [0.0; 3], emission), false),
+            Some(Meaning::Light { emission }) => {
+                (self.parts.palette.number(&primitive.modifier, [0.0; 3], emission), false)
+            }
         };
         self.two_sided += usize::from(two_sided);
         let mut faces = Vec::new();

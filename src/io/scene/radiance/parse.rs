@@ -7,16 +7,58 @@ use crate::io::scene::error::Refusal;
 use std::ops::Range;
 
 /// Types of surfaces.
-pub(super) const SURFACES: [&str; 11] = [
-    "polygon", "sphere", "bubble", "cone", "cup", "cylinder", "tube", "ring", "source", "instance", "mesh",
-];
+pub(super) const SURFACES: [&str; 11] =
+    ["polygon", "sphere", "bubble", "cone", "cup", "cylinder", "tube", "ring", "source", "instance", "mesh"];
 /// Types of materials, mixtures, patterns and textures.
 const MODIFIERS: [&str; 48] = [
-    "plastic", "metal", "trans", "plastic2", "metal2", "trans2", "ashik2", "dielectric", "interface", "glass", "light",
-    "illum", "glow", "spotlight", "mirror", "mist", "prism1", "prism2", "antimatter", "BRTDfunc", "plasfunc",
-    "metfunc", "transfunc", "plasdata", "metdata", "transdata", "BSDF", "aBSDF", "WGMDfunc", "mixfunc", "mixdata",
-    "mixpict", "mixtext", "brightfunc", "brightdata", "brighttext", "colorfunc", "colordata", "colorpict", "colortext",
-    "texfunc", "texdata", "spectrum", "specfile", "specfunc", "specdata", "specpict", "alias",
+    "plastic",
+    "metal",
+    "trans",
+    "plastic2",
+    "metal2",
+    "trans2",
+    "ashik2",
+    "dielectric",
+    "interface",
+    "glass",
+    "light",
+    "illum",
+    "glow",
+    "spotlight",
+    "mirror",
+    "mist",
+    "prism1",
+    "prism2",
+    "antimatter",
+    "BRTDfunc",
+    "plasfunc",
+    "metfunc",
+    "transfunc",
+    "plasdata",
+    "metdata",
+    "transdata",
+    "BSDF",
+    "aBSDF",
+    "WGMDfunc",
+    "mixfunc",
+    "mixdata",
+    "mixpict",
+    "mixtext",
+    "brightfunc",
+    "brightdata",
+    "brighttext",
+    "colorfunc",
+    "colordata",
+    "colorpict",
+    "colortext",
+    "texfunc",
+    "texdata",
+    "spectrum",
+    "specfile",
+    "specfunc",
+    "specdata",
+    "specpict",
+    "alias",
 ];
 
 /// One primitive of the file.
@@ -131,7 +173,8 @@ impl<'a> Reader<'a, '_> {
             Ok(n) => Ok(n),
             Err(_) => {
                 let message = format!("the count of {of} is \"{}\"", shown(word.text));
-                let mend = "three counts follow the identifier, each with its arguments: strings, whole numbers, numbers";
+                let mend =
+                    "three counts follow the identifier, each with its arguments: strings, whole numbers, numbers";
                 self.refuse(Refusal::Syntax, word.span, message, mend)
             }
         }
