@@ -297,6 +297,8 @@ const TARGETS: &[Target] = &[
     ("ply", fuzz::ply),
     ("gltf", fuzz::gltf),
     ("glb", fuzz::glb),
+    ("mitsuba", fuzz::mitsuba),
+    ("radiance", fuzz::radiance),
     ("solution_csv", fuzz::solution_csv),
     ("solution_json", fuzz::solution_json),
     ("solution_npy", fuzz::solution_npy),

@@ -71,6 +71,17 @@ pub fn glb(data: &[u8]) -> bool {
     scene_at(&file("m.glb", data))
 }
 
+/// A Mitsuba scene, with a mesh beside it.
+pub fn mitsuba(data: &[u8]) -> bool {
+    file("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    scene_at(&file("m.xml", data))
+}
+
+/// A Radiance scene.
+pub fn radiance(data: &[u8]) -> bool {
+    scene_at(&file("m.rad", data))
+}
+
 fn solution(name: &str, data: &[u8]) -> bool {
     let bands = ["r", "g", "b"].map(String::from);
     read_solution(&file(name, data)).is_ok_and(|s| s.fit(&bands, &[true; ROWS]).is_ok())

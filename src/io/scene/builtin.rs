@@ -4,6 +4,8 @@ use super::SceneOptions;
 use super::alone::{is_mesh, read_mesh};
 use super::check::known_names;
 use super::error::{Refusal, SceneFileError};
+use super::mitsuba::{is_mitsuba, read_mitsuba};
+use super::radiance::{is_radiance, read_radiance};
 use super::read::{parse_text, read_scene};
 use super::view3d::{is_view3d, read_view3d};
 use crate::scene::Scene;
@@ -62,14 +64,16 @@ pub fn builtin(name: &str) -> Option<Scene> {
     parse_text(name, builtin_text(name)?, &SceneOptions::default()).ok()
 }
 
-/// Opens `builtin:NAME`, the scene file at a path, View3D input (`.vs3`), or a mesh (`.obj`, `.ply`, `.gltf`, `.glb`)
-/// as a scene of one surface.
+/// Opens `builtin:NAME`, the scene file at a path, a scene of View3D (`.vs3`), Mitsuba 3 (`.xml`) or Radiance (`.rad`),
+/// or a mesh (`.obj`, `.ply`, `.gltf`, `.glb`) as a scene of one surface.
 pub fn open_scene(spec: &str, options: &SceneOptions) -> Result<Scene, SceneFileError> {
     let Some(name) = spec.strip_prefix("builtin:") else {
         let path = Path::new(spec);
         return match path {
             _ if is_mesh(path) => read_mesh(path, options),
             _ if is_view3d(path) => read_view3d(path, options),
+            _ if is_mitsuba(path) => read_mitsuba(path, options),
+            _ if is_radiance(path) => read_radiance(path, options),
             _ => read_scene(path, options),
         };
     };

@@ -1,4 +1,5 @@
-//! The scene file `etalon-scene/1` (TOML), the meshes it names (OBJ with MTL, PLY, glTF), and View3D input.
+//! The scene file `etalon-scene/1` (TOML), the meshes it names (OBJ with MTL, PLY, glTF), and
+//! scenes of other programs: View3D, Mitsuba 3, Radiance.
 
 mod alone;
 mod builtin;
@@ -9,8 +10,11 @@ mod error;
 mod folder;
 mod lighting;
 pub(in crate::io) mod mesh;
+mod mitsuba;
 mod photometry;
+mod pieces;
 mod polygon;
+mod radiance;
 mod raw;
 mod read;
 mod source;

@@ -77,7 +77,8 @@ fn signed(t: &[DVec3; 3]) -> f64 {
     0.5 * (t[1] - t[0]).cross(t[2] - t[0]).z
 }
 
-/// True if the corner turns the right way and no other corner lies in its triangle.
+/// True if the corner turns the right way and no other corner lies in its triangle; corners of the same place (the
+/// ends of a seam to a hole) do not count.
 fn is_ear(flat: &[DVec3], left: &[usize], i: usize) -> bool {
     let corners = around(left, i);
     let t = corners.map(|c| flat[c]);
@@ -85,7 +86,7 @@ fn is_ear(flat: &[DVec3], left: &[usize], i: usize) -> bool {
         return false;
     }
     let inside = |p: DVec3| (0..3).all(|k| signed(&[t[k], t[(k + 1) % 3], p]) >= 0.0);
-    left.iter().filter(|c| !corners.contains(c)).all(|c| !inside(flat[*c]))
+    left.iter().filter(|c| !corners.contains(c) && !t.contains(&flat[**c])).all(|c| !inside(flat[*c]))
 }
 
 #[cfg(test)]
@@ -117,6 +118,16 @@ mod tests {
         assert_eq!(parts.len(), 4);
         assert!((parts.iter().map(|t| area(t)).sum::<f64>() - 5.0).abs() < 1e-14);
         assert!(parts.iter().all(|t| unit_normal(t).z > 0.0));
+    }
+
+    #[test]
+    fn a_seam_leads_to_a_hole() {
+        let outer = [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (4.0, 4.0, 0.0), (0.0, 4.0, 0.0), (0.0, 0.0, 0.0)];
+        let hole = [(1.0, 1.0, 0.0), (1.0, 3.0, 0.0), (3.0, 3.0, 0.0), (3.0, 1.0, 0.0), (1.0, 1.0, 0.0)];
+        let parts = ears(&loop_of(&[outer, hole].concat())).unwrap();
+        let within = |t: &[DVec3; 3]| (t.iter().sum::<DVec3>() / 3.0 - DVec3::new(2.0, 2.0, 0.0)).abs().max_element();
+        assert!((parts.iter().map(|t| area(t)).sum::<f64>() - 12.0).abs() < 1e-14);
+        assert!(parts.iter().filter(|t| area(*t) > 0.0).all(|t| within(t) > 1.0), "{parts:?}");
     }
 
     #[test]
