@@ -22,8 +22,6 @@ const USUAL: [&[&str]; 8] = [
 pub(super) struct Kept {
     pub bands: Vec<String>,
     pub notice: Option<String>,
-    /// True if faces have the values.
-    pub of_faces: bool,
     places: Vec<Vec<(usize, f64)>>,
 }
 
@@ -59,7 +57,7 @@ pub(super) fn choose(header: &Header, keep: Keep) -> Result<Kept, MeshFault> {
     let notice = (full > 1.0).then(|| coarse(&format!("the values of each {}", of.name), full));
     let mut all = vec![Vec::new(); header.elements.len()];
     all[element] = places;
-    Ok(Kept { bands: band_names(&names), notice, of_faces: element == face, places: all })
+    Ok(Kept { bands: band_names(&names), notice, places: all })
 }
 
 /// Names that may be values: not the coordinates of vertices.
