@@ -1,6 +1,7 @@
 //! Conducts whole runs: reference, solve, check, demo. Hands finished records to reports, which only format.
 
 pub mod audit;
+mod causes;
 mod contributions;
 pub mod converge;
 mod judge;
@@ -15,6 +16,7 @@ mod shoot;
 mod split;
 pub mod validate;
 
+pub use causes::{Cause, CauseOptions, causes};
 pub use contributions::{Contributions, Rows, Source, contributions};
 pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, break_down, judge};
 pub use kept::KeptWork;
