@@ -9,6 +9,13 @@ const MOST: usize = 8;
 /// Bounces looked at one by one.
 const SINGLE: usize = 4;
 
+/// What needs no matrix: nothing is reflected at all.
+pub(super) fn hear_emission_alone(jury: &mut Jury) {
+    let case = jury.case;
+    let sentence = "no light is reflected: the values are the emission alone".to_string();
+    say(jury, "missing-bounces", sentence, case.everywhere(|k| case.emission[k] - case.truth[k]));
+}
+
 pub(super) fn hear(jury: &mut Jury, quick: &Quick) {
     let case = jury.case;
     // What is left beyond k bounces: `B - E` beyond none, and each reflected once more. Only the light that has been
@@ -17,9 +24,8 @@ pub(super) fn hear(jury: &mut Jury, quick: &Quick) {
     for k in 0..MOST {
         beyond.push(quick.reflected(&beyond[k]));
     }
-    for (k, rest) in beyond.iter().enumerate() {
+    for (k, rest) in beyond.iter().enumerate().skip(1) {
         let sentence = match k {
-            0 => "no light is reflected: the values are the emission alone".to_string(),
             1 => "only direct light: bounces after the first are missing".to_string(),
             _ => format!("bounces are missing: the solution is the sum of {k}"),
         };

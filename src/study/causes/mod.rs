@@ -80,6 +80,7 @@ pub fn causes(
     let Some(case) = Case::new(session.stage(), &reference.patches, solution) else { return Vec::new() };
     let mut jury = Jury::new(&case);
     brightness::hear(&mut jury, &reference.patches);
+    bounces::hear_emission_alone(&mut jury);
     encoding::hear(&mut jury);
     order::hear(&mut jury);
     patches::hear(&mut jury);
