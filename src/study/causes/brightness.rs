@@ -21,9 +21,7 @@ pub(super) fn hear(jury: &mut Jury, reference: &Replicates) {
 /// `B` or `B - E` times one factor.
 fn scales(jury: &mut Jury, reference: &Replicates) {
     let case = jury.case;
-    for (kind, what, of_emission) in
-        [("scale", "everything", 0.0), ("scale-reflected", "all reflected light", 1.0)]
-    {
+    for (kind, what, of_emission) in [("scale", "everything", 0.0), ("scale-reflected", "all reflected light", 1.0)] {
         let light = case.everywhere(|k| case.truth[k] - of_emission * case.emission[k]);
         let factor = 1.0 + case.amount(&light);
         // Named by what is known of factors: the same words as beside the metrics.
@@ -63,7 +61,9 @@ fn quantities(jury: &mut Jury) {
 fn irradiance(jury: &mut Jury) {
     let case = jury.case;
     let black = |i: usize| case.reflectance[i * case.bands..(i + 1) * case.bands].iter().all(|r| *r <= 0.0);
-    let area = |choose: &dyn Fn(usize) -> bool| (0..case.areas.len()).filter(|i| choose(*i)).map(|i| case.areas[i]).sum::<f64>();
+    let area = |choose: &dyn Fn(usize) -> bool| {
+        (0..case.areas.len()).filter(|i| choose(*i)).map(|i| case.areas[i]).sum::<f64>()
+    };
     if area(&black) > MOST_BLACK * area(&|_| true) {
         return;
     }

@@ -178,9 +178,6 @@ impl<'a> Case<'a> {
 
 impl Squares {
     fn less(self, other: Self) -> Self {
-        Self {
-            luminance: (self.luminance - other.luminance).max(0.0),
-            bands: (self.bands - other.bands).max(0.0),
-        }
+        Self { luminance: (self.luminance - other.luminance).max(0.0), bands: (self.bands - other.bands).max(0.0) }
     }
 }

@@ -27,9 +27,11 @@ fn curves(jury: &mut Jury) {
         ("srgb", "the values are sRGB-encoded instead of linear", encode),
         ("srgb", "the values are sRGB-encoded instead of linear, and cut off at 1", |x| encode(x.clamp(0.0, 1.0))),
         ("srgb-decoded", "the values went through the sRGB decoding, though they were linear", decode),
-        ("srgb-decoded", "the values were cut off at 1 and went through the sRGB decoding, though they were linear", |x| {
-            decode(x.clamp(0.0, 1.0))
-        }),
+        (
+            "srgb-decoded",
+            "the values were cut off at 1 and went through the sRGB decoding, though they were linear",
+            |x| decode(x.clamp(0.0, 1.0)),
+        ),
         ("gamma", "the values are gamma-encoded (power 1/2.2) instead of linear", |x| x.max(0.0).powf(1.0 / 2.2)),
         ("gamma", "the values are gamma-encoded (power 1/2.2) instead of linear, and cut off at 1", |x| {
             x.clamp(0.0, 1.0).powf(1.0 / 2.2)
@@ -55,8 +57,12 @@ fn orders(jury: &mut Jury) {
         let of = |k: usize| case.truth[k - k % case.bands + order[k % case.bands]];
         let change = case.everywhere(|k| of(k) - case.truth[k]);
         let given: Vec<&str> = order.iter().map(|c| names[*c].as_str()).collect();
-        let sentence = format!("the bands are in another order: {} where {} is expected", given.join(", "), names.join(", "));
-        jury.hear(Hypothesis { family: "bands", kind: "bands-swapped", place: None, parameters: 0, sentence, partly: true }, change);
+        let sentence =
+            format!("the bands are in another order: {} where {} is expected", given.join(", "), names.join(", "));
+        jury.hear(
+            Hypothesis { family: "bands", kind: "bands-swapped", place: None, parameters: 0, sentence, partly: true },
+            change,
+        );
     }
 }
 
@@ -71,7 +77,10 @@ fn grey(jury: &mut Jury) {
     let luminance = case.everywhere(|k| case.stage.photometry.luminance(of(k)) - case.truth[k]);
     for (change, what) in [(mean, "the mean of the bands"), (luminance, "the luminance")] {
         let sentence = format!("every band holds {what}");
-        jury.hear(Hypothesis { family: "bands", kind: "bands-alike", place: None, parameters: 0, sentence, partly: true }, change);
+        jury.hear(
+            Hypothesis { family: "bands", kind: "bands-alike", place: None, parameters: 0, sentence, partly: true },
+            change,
+        );
     }
 }
 

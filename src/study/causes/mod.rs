@@ -62,7 +62,8 @@ impl Default for CauseOptions {
     }
 }
 
-/// A cause that leaves less than this share ends the search before the quick matrix is made.
+/// A cause that leaves less than this share ends the search before the quick matrix is made, and before objects are taken
+/// out.
 const SETTLED: f64 = 0.02;
 
 /// Looks for the mistake that explains the error of a solution, the best first. Empty where no single known mistake
@@ -92,7 +93,10 @@ pub fn causes(
         lamps::hear(&mut jury, &quick);
         materials::hear(&mut jury, &quick);
         swaps::hear(&mut jury, &quick);
-        objects::hear(&mut jury, &quick);
+        // Each object takes rays of its own.
+        if jury.least_left() > SETTLED {
+            objects::hear(&mut jury, &quick);
+        }
     }
     jury.verdict()
 }

@@ -83,7 +83,10 @@ fn say(jury: &mut Jury, runs: &[Run], order: Order, place: Option<String>, sente
         }
     }
     if change.iter().any(|d| *d != 0.0) {
-        jury.hear(Hypothesis { family: FAMILY, kind: "numbering", place, parameters: 0, sentence, partly: true }, change);
+        jury.hear(
+            Hypothesis { family: FAMILY, kind: "numbering", place, parameters: 0, sentence, partly: true },
+            change,
+        );
     }
 }
 

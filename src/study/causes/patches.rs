@@ -10,7 +10,7 @@ const SURFACES: usize = 12;
 /// Few patches: this share of all, and at most so many.
 const FEW: (f64, usize) = (0.01, 10);
 /// Share of the squared error that they hold.
-const HELD: f64 = 0.9;
+const HELD: f64 = 0.8;
 /// Patches of which all pairs are tried.
 const EXCHANGED: usize = 4;
 
@@ -52,7 +52,14 @@ fn surfaces(jury: &mut Jury) {
         let sentence = format!("surface \"{name}\" alone is {} (factor {})", too_bright(factor), digits(factor));
         let change = light.iter().map(|b| (factor - 1.0) * b).collect();
         jury.hear(
-            Hypothesis { family: FAMILY, kind: "one-surface", place: Some(name), parameters: 1, sentence, partly: false },
+            Hypothesis {
+                family: FAMILY,
+                kind: "one-surface",
+                place: Some(name),
+                parameters: 1,
+                sentence,
+                partly: false,
+            },
             change,
         );
     }

@@ -4,7 +4,9 @@
 
 use super::CauseOptions;
 use super::case::Case;
-use crate::estimate::{Blend, Coverage, HitCounts, PairFactors, PairPlan, Plan, cast, pair_form_factors, patch_emitters};
+use crate::estimate::{
+    Blend, Coverage, HitCounts, PairFactors, PairPlan, Plan, cast, pair_form_factors, patch_emitters,
+};
 use crate::raycast::Tracer;
 use crate::sampling::{Role, Stream};
 use crate::scene::Stage;
@@ -13,16 +15,16 @@ use crate::solver::{System, Transport, krylov};
 use crate::study::Session;
 
 /// Rays per patch, at least and at most: powers of two.
-const RAYS: (u64, u64) = (128, 1024);
+const RAYS: (u64, u64) = (128, 512);
 /// Direct light from pairs without rays: pairs with a lamp, sides times facets times facets to sort, up to which it is
 /// settled, and its accuracy. Lamps are small, and few rays find them.
 const LAMP_PAIRS: usize = 300_000;
 const LAMP_SORTING: f64 = 3e7;
 const LAMP_PLAN: PairPlan = PairPlan {
-    target_error: Some(2e-3),
+    target_error: Some(2e-2),
     points: u64::MAX,
     max_time: None,
-    points_per_pair: 500,
+    points_per_pair: 64,
     arranged_bodies: 1,
     most_bodies: 16,
     coverage: Coverage::Emitters,

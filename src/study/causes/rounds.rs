@@ -15,8 +15,14 @@ pub(super) fn hear(jury: &mut Jury, quick: &Quick) {
         let plural = if round == 1 { "" } else { "s" };
         let sentence = format!("not converged: the state of a Gauss-Seidel iteration after {round} round{plural}");
         let change = error.iter().map(|e| -e).collect();
-        let hypothesis =
-            Hypothesis { family: "bounces", kind: "not-converged", place: None, parameters: 0, sentence, partly: false };
+        let hypothesis = Hypothesis {
+            family: "bounces",
+            kind: "not-converged",
+            place: None,
+            parameters: 0,
+            sentence,
+            partly: false,
+        };
         jury.hear(hypothesis, change);
     }
 }
