@@ -44,7 +44,9 @@ impl Progress for Silent {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let asked: Vec<String> = std::env::args().skip(1).collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("references/certified");
-    println!("| scene | patches | error (one sigma, eq. 7) | second computation: error, eq. 7 of the difference | size |");
+    println!(
+        "| scene | patches | error (one sigma, eq. 7) | second computation: error, eq. 7 of the difference | size |"
+    );
     println!("| --- | --- | --- | --- | --- |");
     for (name, target) in SCENES {
         if !asked.is_empty() && !asked.iter().any(|a| a == name) {

@@ -53,7 +53,10 @@ fn two_squares_are_exact() {
         let ((ri, ei), (rj, ej)) = (of(i), of(j));
         let bi = (ei + ri * f * ej) / (1.0 - ri * rj * f * f);
         let bj = ej + rj * f * bi;
-        assert!((b.of(i)[0] - bi).abs() < 1e-9 * bi.max(1e-9) && (b.of(j)[0] - bj).abs() < 1e-9 * bj.max(1e-9), "{name}");
+        assert!(
+            (b.of(i)[0] - bi).abs() < 1e-9 * bi.max(1e-9) && (b.of(j)[0] - bj).abs() < 1e-9 * bj.max(1e-9),
+            "{name}"
+        );
     }
 }
 

@@ -4,7 +4,7 @@ use super::asked::{Level, is_reflected};
 use super::format::{confidence, is_known, percent, percent_estimate, percent_exact, significant};
 use crate::metrics::{Comparison, LimitOutcome, Verdict};
 use crate::stats::Estimate;
-use crate::study::Record;
+use crate::study::{Cause, Record};
 
 /// The verdict as a word and a sentence.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -140,7 +140,10 @@ pub fn warnings(record: &Record) -> Vec<(String, String)> {
         );
         all.push(("The lamps outshine the rest".into(), text));
     }
-    all.extend(scale_warning(c));
+    match record.causes.first() {
+        Some(cause) => all.push(cause_found(cause)),
+        None => all.extend(scale_warning(c)),
+    }
     if let (Some(floor), Some(decision)) = (c.reference_noise_floor, &record.decision)
         && let Some(tight) = decision.limits.iter().map(|l| l.limit).reduce(f64::min)
         && floor > tight
@@ -154,6 +157,17 @@ pub fn warnings(record: &Record) -> Vec<(String, String)> {
         all.push(("The reference is noisier than the limit".into(), text));
     }
     all
+}
+
+/// The mistake that the error looks like.
+fn cause_found(cause: &Cause) -> (String, String) {
+    let text = format!(
+        "{} This explains {} of the squared error; {} are left.",
+        cause.sentence,
+        percent(cause.explains),
+        percent(cause.left)
+    );
+    ("The likely cause".into(), text)
 }
 
 /// A factor that explains most of the error is what a developer looks at first.

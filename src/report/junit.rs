@@ -52,7 +52,9 @@ fn case(record: &Record, limit: &LimitOutcome) -> TestCase {
 
 /// What helps to find the cause: the sentence, the worst patches, the command.
 fn details(record: &Record) -> String {
-    let mut lines = vec![headline(record).sentence, String::new(), worst_title(record)];
+    let mut lines = vec![headline(record).sentence];
+    lines.extend(record.causes.first().map(|c| format!("The likely cause: {}", c.sentence)));
+    lines.extend([String::new(), worst_title(record)]);
     let noun = Level::of(record).noun();
     lines.extend(worst_lines(record).iter().map(|w| {
         format!(

@@ -63,6 +63,7 @@ pub(crate) fn record() -> Record {
             ("Program".into(), "etalon 0.1.0".into()),
             ("Reference".into(), "closed form, direct light only".into()),
         ],
+        causes: Vec::new(),
         looks: Vec::new(),
         notices: vec!["surface \"red wall\": a notice of the scene".into()],
         findings: vec![finding()],

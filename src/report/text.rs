@@ -22,7 +22,8 @@ impl Exporter for Text {
 /// The one line a log needs: verdict, solution, what it rests on.
 pub fn one_line(record: &Record) -> String {
     let head = headline(record);
-    format!("{} {}", head.word, printable(&head.sentence))
+    let cause = record.causes.first().map_or(String::new(), |c| format!(" Likely cause: {}", c.sentence));
+    format!("{} {}{}", head.word, printable(&head.sentence), printable(&cause))
 }
 
 /// Verdict, metrics and worst patches; `colour` only paints the verdict and dims what is secondary.

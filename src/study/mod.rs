@@ -2,6 +2,7 @@
 
 pub mod audit;
 mod baseline;
+mod causes;
 mod contributions;
 pub mod converge;
 mod judge;
@@ -18,6 +19,7 @@ mod split;
 pub mod validate;
 
 pub use baseline::{Baseline, JudgedBy, Taken};
+pub use causes::{Cause, CauseOptions, causes};
 pub use contributions::{Contributions, Rows, Source, contributions};
 pub use judge::{Against, JudgeError, Judgement, Question, Receivers, anonymous_stage, break_down, judge};
 pub use kept::KeptWork;

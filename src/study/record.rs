@@ -1,6 +1,6 @@
 //! The finished record of a comparison: all a report needs, nothing left to compute.
 
-use super::{Contributions, Look};
+use super::{Cause, Contributions, Look};
 use crate::metrics::{Breakdown, Comparison, Decision, Split};
 use crate::scene::{Finding, Stage};
 use crate::solution::Radiosity;
@@ -27,6 +27,9 @@ pub struct Record {
     /// What the scene doctor found.
     #[serde(default)]
     pub findings: Vec<Finding>,
+    /// Known mistakes that explain most of the error, the best first; empty where none does, or none was looked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub causes: Vec<Cause>,
     /// Looks by better and better references, where it took more than the stored one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub looks: Vec<Look>,

@@ -60,6 +60,10 @@ pub struct CompareArgs {
     /// Write GitHub-flavoured Markdown here.
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
+    /// Look for the mistake that explains the error (radiance for radiosity, sRGB, swapped materials, a missing object or
+    /// bounce...): auto, where a check fails.
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Causes::Auto)]
+    pub causes: Causes,
     /// A solution as another program wrote it.
     #[command(flatten)]
     pub brought: BroughtArgs,
@@ -150,6 +154,17 @@ pub struct LimitArgs {
     /// With --baseline: eq. 7 may be larger by this much, and has to be surely so: then a close call is inconclusive.
     #[arg(long, value_name = "X", requires = "baseline", allow_hyphen_values = true)]
     pub max_worse: Option<Fraction>,
+}
+
+/// When causes are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Causes {
+    /// Where a check fails.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
 }
 
 /// What exit 3 becomes.

@@ -23,7 +23,7 @@ pub use convert::ConvertArgs;
 pub use form_factors::{
     FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
 };
-pub use judge::{CheckArgs, CompareArgs, OnInconclusive};
+pub use judge::{Causes, CheckArgs, CompareArgs, OnInconclusive};
 pub use rays::{Estimator, RayArgs, SuiteArgs};
 pub use reference::{ReferenceArgs, Truth};
 pub use render::{OnOff, RenderArgs, RenderStyle};

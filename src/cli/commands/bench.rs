@@ -5,7 +5,9 @@ use crate::cli::args::{CompareArgs, Truth};
 use crate::cli::console::Console;
 use crate::cli::exit::Failure;
 use crate::cli::values::PerLevel;
-use crate::io::{SolutionFile, StoredReference, certified, certified_names, is_mesh_values, is_reference, read_solution};
+use crate::io::{
+    SolutionFile, StoredReference, certified, certified_names, is_mesh_values, is_reference, read_solution,
+};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
 use crate::study::{Against, Receivers, anonymous_stage};

@@ -3,7 +3,7 @@
 use super::bench::{Bench, by_patch, patch_means};
 use super::report::{Stopwatch, write_report};
 use super::{check_residual, inputs, limits, looks, split, told};
-use crate::cli::args::{CheckArgs, CompareArgs, Kernel, OnInconclusive};
+use crate::cli::args::{Causes, CheckArgs, CompareArgs, Kernel, OnInconclusive};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::io::atomic;
@@ -12,7 +12,9 @@ use crate::render::{View, Visibility, fit_camera, resized};
 use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, one_line, text_summary};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
-use crate::study::{self, Against, Contributions, Look, Question, Record, Rows, Session, break_down, judge};
+use crate::study::{
+    self, Against, Cause, CauseOptions, Contributions, Look, Question, Record, Rows, Session, break_down, causes, judge,
+};
 use std::io::IsTerminal;
 use std::path::Path;
 
@@ -145,6 +147,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         }
     };
     let confidence = judgement.comparison.confidence;
+    let judgement_verdict = judgement.decision.as_ref().map(|d| d.verdict);
     let split = split::split(args, &bench.stage, &bench.solution, &bench.against, &bench.receivers, confidence)?;
     let mut record = Record {
         solution_name: args.solution.display().to_string(),
@@ -156,6 +159,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         contributions: Vec::new(),
         findings: told::findings(&bench.against),
         notices: notices(asked, &bench, &looks),
+        causes: likely_causes(asked, &bench, judgement_verdict, console)?,
         looks,
         settings: told::settings(asked, &bench.against),
         provenance: told::provenance(&bench.against, &bench.stage),
@@ -184,6 +188,28 @@ fn notices(asked: &Asked, bench: &Bench, looks: &[Look]) -> Vec<String> {
     out.extend(bench.notices.iter().cloned());
     out.extend(looks::told(looks));
     out
+}
+
+/// The mistakes that the error looks like, where they are asked for: patches of a patch-system reference with geometry.
+fn likely_causes(
+    asked: &Asked,
+    bench: &Bench,
+    verdict: Option<Verdict>,
+    console: &Console,
+) -> Result<Vec<Cause>, Failure> {
+    let wanted = match asked.args.causes {
+        Causes::Never => false,
+        Causes::Always => true,
+        Causes::Auto => verdict == Some(Verdict::Fail),
+    };
+    let Some(reference) = bench.reference().filter(|r| r.provenance.truth == TruthLevel::PatchSystem) else {
+        return Ok(Vec::new());
+    };
+    if !wanted || bench.per_element {
+        return Ok(Vec::new());
+    }
+    let session = open(&bench.stage, asked.kernel, console)?;
+    Ok(session.map_or(Vec::new(), |s| causes(&s, reference, &bench.solution, &CauseOptions::default())))
 }
 
 /// Kernels on the judged scene; `None` where there is no geometry.

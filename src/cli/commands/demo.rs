@@ -72,6 +72,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
         split: None,
         breakdown: Some(breakdown),
         contributions: Vec::new(),
+        causes: Vec::new(),
         looks: Vec::new(),
         findings: told::findings(&against),
         notices: Vec::new(),
