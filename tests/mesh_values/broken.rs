@@ -333,7 +333,6 @@ fn lightmaps() {
     assert!(other(MeshValuesOptions { fields: Some(vec![]), ..base() }).place == "header");
     assert!(other(MeshValuesOptions { scale: 0.0, ..base() }).problem.contains("0 m"));
     assert!(other(MeshValuesOptions { scale: 1e300, ..base() }).problem.contains("beyond"));
-    // An infinite texel: R is the last of four channels in each row; uncompressed copies are easiest to change.
     for end in (0..picture.len() - 1).step_by(picture.len() / 24) {
         std::fs::write(&map, &picture[..end]).unwrap();
         refusal(&map, &options, &format!("cut at {end}"));

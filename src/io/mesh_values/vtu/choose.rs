@@ -82,7 +82,7 @@ fn usual(arrays: &[Array]) -> Option<Vec<String>> {
         return Some(own);
     }
     let has = |n: &&str| arrays.iter().any(|a| a.name == **n);
-    let names = USUAL.iter().find(|names| names.iter().all(|n| has(n)))?;
+    let names = USUAL.iter().find(|names| names.iter().all(has))?;
     Some(names.iter().map(|n| n.to_string()).collect())
 }
 
