@@ -109,7 +109,7 @@ fn values_per_patch_take_their_errors_along() {
 fn a_mesh_in_millimetres_is_refused_and_taken_with_its_unit() {
     let folder = folder(0.001, 5);
     let told = refused(folder.path(), &format!("{CONVERT} -o out.csv"));
-    assert!(told.contains("--units") && told.contains("2000.000") && told.contains("5 patches"), "{told}");
+    assert!(told.contains("--units") && told.contains("2000.000") && told.contains("ceiling"), "{told}");
     assert!(!folder.path().join("out.csv").exists());
     ok(folder.path(), &format!("{CONVERT} --units mm -o out.csv"));
     ok(folder.path(), &format!("{CONVERT} --units 0.001 -o out.csv"));
@@ -119,7 +119,7 @@ fn a_mesh_in_millimetres_is_refused_and_taken_with_its_unit() {
 #[test]
 fn patches_without_a_face_are_refused_by_name_or_left_out() {
     let folder = folder(1.0, 3);
-    let told = refused(folder.path(), &format!("{CONVERT} -o out.csv"));
+    let told = refused(folder.path(), &format!("{CONVERT} --reach 0 -o out.csv"));
     assert!(
         told.contains("3 of \"floor\"") && told.contains("4 of \"ceiling\"") && told.contains("5.0000 m^2"),
         "{told}"

@@ -213,4 +213,16 @@ impl Carried {
         };
         Shares { covered: share(|s| s.covered), near: share(|s| s.near), unmatched: share(|s| s.unmatched) }
     }
+
+    /// How much values vary within patches: their spread against the values themselves, both as roots of mean squares
+    /// by area over all bands. `None` where every value is 0.
+    pub fn relative_spread(&self) -> Option<f64> {
+        let bands = self.values.bands;
+        let power = |values: &[f64]| {
+            let patches = values.chunks(bands).zip(&self.areas);
+            compensated_sum(patches.map(|(v, area)| area * v.iter().map(|x| x * x).sum::<f64>()))
+        };
+        let whole = power(&self.values.values);
+        (whole > 0.0).then(|| (power(&self.spread) / whole).sqrt())
+    }
 }

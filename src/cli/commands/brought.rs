@@ -127,6 +127,8 @@ fn in_bands(path: &Path, values: MeshValues, args: &BroughtArgs, stage: &Stage) 
 
 /// Why patches have no value, as far as it can be told.
 fn unmatched(path: &Path, told: &str, values: &MeshValues, carried: &Carried, stage: &Stage) -> Failure {
+    let ((lo, hi), (low, high)) = (stage.bounds(), bounds(values));
+    let times = low.distance(high) / lo.distance(hi);
     let mut mend = String::from("mend the mesh, or give --skip-unmatched to leave them out");
     if carried.would_match_turned > 0 {
         let n = carried.would_match_turned;
@@ -134,9 +136,7 @@ fn unmatched(path: &Path, told: &str, values: &MeshValues, carried: &Carried, st
             "faces wound the other way would match {n} of them: a face radiates to the side from which its \
                         corners run counter-clockwise; {mend}"
         );
-    } else if carried.of_scene().unmatched > 0.5 {
-        let (lo, hi) = stage.bounds();
-        let (low, high) = bounds(values);
+    } else if carried.of_scene().unmatched > 0.5 || !(0.5..2.0).contains(&times) {
         mend = format!(
             "the mesh reaches from {low:.3} to {high:.3}, the scene from {lo:.3} to {hi:.3} (metres): see --units and \
              --up; or {mend}"

@@ -51,7 +51,7 @@ pub fn run(args: &ConvertArgs, console: &Console) -> Result<u8, Failure> {
     let text = format!("{from} on {written} patches of {}{how}; written to {to}", stage.name);
     let json = json!({
         "scene": stage.name, "scene_hash": stage.hash(), "patches": stage.patch_count(), "left_out": skipped,
-        "carried": brought.carried.as_ref().map(|c| in_numbers(c, &brought)), "output": args.output,
+        "carried": brought.carried.as_ref().map(in_numbers), "output": args.output,
     });
     console.result(&text, &json);
     Ok(exit::DONE)
@@ -80,24 +80,24 @@ fn bytes(brought: &Brought, stage: &Stage, format: Format) -> Vec<u8> {
 
 fn in_words(carried: &Carried) -> String {
     let shares = carried.of_scene();
+    let spread = carried.relative_spread().filter(|s| *s > 0.0);
+    let spread = spread.map_or(String::new(), |s| format!("; within patches they vary by {:.2} % (rms)", 100.0 * s));
     format!(
-        ": {:.2} % of the area by faces of its plane, {:.2} % by the nearest, {:.2} % without a value",
+        ": {:.2} % of the area by faces of its plane, {:.2} % by the nearest, {:.2} % without a value{spread}",
         100.0 * shares.covered,
         100.0 * shares.near,
         100.0 * shares.unmatched,
     )
 }
 
-fn in_numbers(carried: &Carried, brought: &Brought) -> Value {
+fn in_numbers(carried: &Carried) -> Value {
     let shares = carried.of_scene();
     let unmatched: Vec<Value> =
         carried.unmatched().iter().map(|u| json!({ "patch": u.patch, "share": u.share, "area": u.area })).collect();
-    let bands = brought.radiosity.bands;
-    let spread: Vec<&[f64]> = carried.spread.chunks(bands).collect();
     json!({
         "covered": shares.covered, "near": shares.near, "unmatched": shares.unmatched,
         "unmatched_patches": unmatched, "furthest": carried.furthest, "turned": carried.turned,
         "doubled_area": carried.doubled, "faces": carried.faces, "faces_unused": carried.idle.len(),
-        "area_unused": compensated_sum(carried.idle.iter().map(|f| f.area)), "spread": spread,
+        "area_unused": compensated_sum(carried.idle.iter().map(|f| f.area)), "spread": carried.relative_spread(),
     })
 }
