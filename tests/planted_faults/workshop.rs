@@ -7,7 +7,7 @@ use etalon::io::scene::builtin;
 use etalon::methods::{PatchVectors, gather, hemicube};
 use etalon::raycast::KernelKind;
 use etalon::reference::{Options, Progress};
-use etalon::scene::{Grid, Scene, Stage};
+use etalon::scene::{Scene, Stage};
 use etalon::solution::{FormFactors, Radiosity};
 use etalon::solver::{Transport, gauss_seidel};
 use etalon::study::{self, Cause, CauseOptions, Session, causes};
@@ -68,18 +68,6 @@ const FINE: f64 = 3e-5;
 impl Bench {
     pub fn new(name: &str) -> Self {
         Self::of(builtin(name).expect("a built-in scene"))
-    }
-
-    /// The same scene with about a ninth of the patches.
-    pub fn coarse(name: &str) -> Self {
-        let mut scene = builtin(name).expect("a built-in scene");
-        for face in scene.surfaces.iter_mut().flat_map(|s| &mut s.faces) {
-            face.elements = Grid::Whole;
-            if let Grid::Quad { na, nb } = face.patches {
-                face.patches = Grid::Quad { na: na.div_ceil(3), nb: nb.div_ceil(3) };
-            }
-        }
-        Self::of(scene)
     }
 
     /// The coarse Cornell box with a green wall that glows.
@@ -248,15 +236,6 @@ pub struct Targets<'a> {
 /// In the Cornell box.
 pub const CORNELL: Targets =
     Targets { materials: ["red", "green"], repainted: "white", object: "tall-block", surface: "floor", lamp: None };
-
-/// In the furnished room.
-pub const FURNISHED: Targets = Targets {
-    materials: ["wood", "fabric"],
-    repainted: "floor",
-    object: "table",
-    surface: "ceiling",
-    lamp: Some("window"),
-};
 
 /// All planted mistakes, whole.
 pub fn faults(b: &Bench, t: &Targets) -> Vec<Fault> {

@@ -37,10 +37,13 @@ fn scales(jury: &mut Jury, reference: &Replicates) {
     }
 }
 
+/// The value of patch and band k in another world.
+type Value<'a> = &'a dyn Fn(usize) -> f64;
+
 /// Radiance for radiosity, its inverse, and emission left out or counted twice.
 fn quantities(jury: &mut Jury) {
     let case = jury.case;
-    let known: [(&str, &str, &dyn Fn(usize) -> f64); 4] = [
+    let known: [(&str, &str, Value); 4] = [
         ("radiance", "the values are radiances, not radiosities: pi times too small", &|k| case.truth[k] / PI),
         ("times-pi", "the values are pi times too large: radiosities taken for radiances", &|k| case.truth[k] * PI),
         ("emission-missing", "the values are reflected light only: the emission of the lamps is missing", &|k| {

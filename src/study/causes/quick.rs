@@ -36,7 +36,6 @@ const RESIDUAL: f64 = 1e-5;
 pub(super) struct Quick<'a> {
     pub case: &'a Case<'a>,
     pub session: &'a Session<'a>,
-    pub counts: HitCounts,
     pub matrix: FormFactors,
     pub most_objects: usize,
     plan: Plan,
@@ -58,7 +57,7 @@ impl<'a> Quick<'a> {
         let stream = Stream::new(Role::Witness, options.seed);
         let counts = cast(&session.tracer(), &patch_emitters(stage), stream, &plan, &|_| 0.0, &|_| ()).counts;
         let matrix = blended(direct_light(stage).as_ref(), &counts);
-        Some(Self { case, session, counts, matrix, most_objects: options.most_objects, plan, stream })
+        Some(Self { case, session, matrix, most_objects: options.most_objects, plan, stream })
     }
 
     /// The matrix of another stage of as many patches, with the same rays; only the rows asked for.
