@@ -19,7 +19,7 @@ use std::path::Path;
 const SCENES: &[(&str, f64)] = &[
     ("cornell-box-coarse", 1e-4),
     ("cornell-box", 3e-4),
-    ("furnace-l", 1e-6),
+    ("furnace-l", 1e-9),
     ("opposed-squares", 1e-9),
     ("edge-squares", 1e-9),
     ("cube-one-emitter", 1e-9),
@@ -82,13 +82,15 @@ fn compute(
     let session = Session::open(stage, kernel)?;
     let plan = Plan { rays, randomisations: RANDOMISATIONS, target_error, estimator, ..Plan::default() };
     let (stored, _) = reference(&session, &Options { plan, seed }, &Silent)?;
-    match stored.self_check.failures().next() {
+    let failed = stored.self_check.failures().next().map(|c| format!("{}: {}", c.name, c.finding));
+    match failed {
         None => Ok(stored),
-        Some(c) => Err(format!("{}: self-check of {} failed: {}", stage.name, c.name, c.finding).into()),
+        Some(what) => Err(format!("{}: the self-check failed: {what}", stage.name).into()),
     }
 }
 
-/// Eq. 7 of the first reference's mean against the second, with its interval: 0 has to lie in it.
+/// Eq. 7 of the first reference's mean against the second, with its interval: it has to reach down to what the first
+/// states of its own error. (In a furnace the second has none.)
 fn difference(first: &StoredReference, second: &StoredReference) -> Result<String, Box<dyn std::error::Error>> {
     let receivers = Receivers::patches(&first.stage);
     let surfaces: Vec<&str> = receivers.surfaces.iter().map(String::as_str).collect();
@@ -101,8 +103,8 @@ fn difference(first: &StoredReference, second: &StoredReference) -> Result<Strin
     };
     let truth = Truth::Sampled(second.patches.clone());
     let e = compare(&first.patches.mean(), &truth, None, &judged, 0.999, false)?.rms;
-    if e.low > 0.0 {
+    if e.low > 4.0 * first.provenance.relative_error {
         return Err(format!("{}: the two computations differ: {e:?}", first.stage.name).into());
     }
-    Ok(format!("0 to {:.1e}", e.high))
+    Ok(format!("{:.1e} to {:.1e}", e.low, e.high))
 }
