@@ -4,7 +4,6 @@ use super::{FileError, StoredReference};
 use std::path::Path;
 
 /// A name with the bytes of `references/certified/NAME.zip`.
-#[allow(unused_macros)]
 macro_rules! reference {
     ($name:literal) => {
         ($name, include_bytes!(concat!("../../references/certified/", $name, ".zip")).as_slice())
@@ -12,7 +11,20 @@ macro_rules! reference {
 }
 
 /// Names of built-in scenes with their references, in the order in which they are listed.
-const CERTIFIED: &[(&str, &[u8])] = &[];
+const CERTIFIED: &[(&str, &[u8])] = &[
+    reference!("cornell-box-coarse"),
+    reference!("cornell-box"),
+    reference!("furnace-l"),
+    reference!("opposed-squares"),
+    reference!("edge-squares"),
+    reference!("cube-one-emitter"),
+    reference!("l-room"),
+    reference!("dynamic-cube"),
+    reference!("cube-room"),
+    reference!("small-lamp"),
+    reference!("visibility-only"),
+    reference!("furnished-room"),
+];
 
 /// Names of the references that come with the program.
 pub fn certified_names() -> Vec<&'static str> {
