@@ -9,6 +9,7 @@ mod error;
 mod floor;
 mod groups;
 mod histogram;
+mod matrix;
 mod noise;
 mod quantity;
 mod rates;
@@ -33,6 +34,10 @@ pub use error::MetricsError;
 pub use floor::top1_noise_floor;
 pub use groups::GroupError;
 pub use histogram::Histogram;
+pub use matrix::{
+    EntryDifference, MATRIX_FALSE_ALARM, MatrixComparison, MatrixLimits, MatrixRequest, Rounding, RowDifference,
+    compare_matrices, decide_matrix,
+};
 pub use noise::{Beyond, NoiseTest};
 pub use rates::{FLOOR_FACTOR, Point, Rate, Reached, fit_rate, reached};
 pub use residual::{BandBounds, Rebounded, ResidualMetrics, bound_error};

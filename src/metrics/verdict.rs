@@ -27,7 +27,7 @@ pub fn decide(comparison: &Comparison, limits: &Limits) -> Decision {
     Decision { verdict: overall(&limits), limits }
 }
 
-fn overall(limits: &[LimitOutcome]) -> Verdict {
+pub(super) fn overall(limits: &[LimitOutcome]) -> Verdict {
     let any = |v: Verdict| limits.iter().any(|l| l.verdict == v);
     if any(Verdict::Fail) {
         Verdict::Fail
@@ -38,7 +38,7 @@ fn overall(limits: &[LimitOutcome]) -> Verdict {
     }
 }
 
-fn outcome(metric: &str, limit: f64, estimate: Option<Estimate>) -> LimitOutcome {
+pub(super) fn outcome(metric: &str, limit: f64, estimate: Option<Estimate>) -> LimitOutcome {
     let known = estimate.unwrap_or(Estimate { value: 0.0, std_err: None, low: 0.0, high: f64::MAX });
     let verdict = if known.low > limit {
         Verdict::Fail

@@ -15,7 +15,7 @@ mod suites;
 pub use audit::{AuditArgs, AuditCommand, AuditForm};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
 pub use form_factors::{
-    FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
+    FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsCompareArgs, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
 };
 pub use judge::{CheckArgs, CompareArgs, OnInconclusive};
 pub use rays::{Estimator, RayArgs, SuiteArgs};
