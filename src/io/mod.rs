@@ -19,7 +19,10 @@ pub use claim::{Claim, end_claims};
 pub use error::FileError;
 pub use folder::write_folder;
 pub use journal::{Found, Journal};
-pub use matrix::{Level, MatrixFormat, MatrixLayout, MatrixStyle, SurfaceRows, read_by_surface, read_form_factors, read_form_factors_of, surface_rows, write_form_factors, write_matrix};
+pub use matrix::{
+    Level, MatrixFormat, MatrixLayout, MatrixStyle, SurfaceRows, read_by_surface, read_form_factors,
+    read_form_factors_of, surface_rows, write_form_factors, write_matrix,
+};
 pub use patches::{PatchFormat, write_patches};
 pub use series::{INDEX as SERIES_INDEX, SeriesWriter, read_series};
 pub use solution::{BandNames, SolutionFile, SolutionFormat, read_solution, write_solution};

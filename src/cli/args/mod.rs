@@ -15,7 +15,8 @@ mod suites;
 pub use audit::{AuditArgs, AuditCommand, AuditForm};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
 pub use form_factors::{
-    FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsCompareArgs, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
+    FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsCompareArgs, FormFactorsRepairArgs,
+    MatrixArgs, MatrixCommand,
 };
 pub use judge::{CheckArgs, CompareArgs, OnInconclusive};
 pub use rays::{Estimator, RayArgs, SuiteArgs};

@@ -27,7 +27,8 @@ pub fn run(args: &FormFactorsCompareArgs, kernel: KernelKind, console: &Console)
     let around = sides.surroundings(&stage);
     let run = compare_matrix(&sides.theirs, &sides.judge, &around, request);
     let decision = (limits.given() > 0).then(|| decide_matrix(&run.comparison, &limits));
-    let subject = told::Subject { file: &args.matrix.file, judge: &judge.source, rows: sides.rows(), names: &sides.names };
+    let subject =
+        told::Subject { file: &args.matrix.file, judge: &judge.source, rows: sides.rows(), names: &sides.names };
     let json = json!({
         "file": args.matrix.file, "scene": stage.name, "scene_hash": stage.hash(), "patches": stage.patch_count(),
         "rows": sides.rows(), "judged_by": judge.source, "judge_relative_error": judge.relative_error,

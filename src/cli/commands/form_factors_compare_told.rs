@@ -73,7 +73,8 @@ fn errors(out: &mut String, c: &MatrixComparison) {
     }
     let beside = match (c.stated_noise, c.honesty) {
         (Some(stated), Some(ratio)) => {
-            let _ = writeln!(out, "they state an error of {stated:.3e} rms; the difference is {ratio:.2} times that");
+            let interval = format!("{:.3}  ({:.3} to {:.3})", ratio.value, ratio.low, ratio.high);
+            let _ = writeln!(out, "they state an error of {stated:.3e} rms; the difference is {interval} times that");
             "the errors of both"
         }
         _ => "rounding and the judge's errors (they state none)",

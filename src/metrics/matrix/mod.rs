@@ -6,7 +6,9 @@ mod verdict;
 
 use crate::math::Compensated;
 use crate::solution::FormFactors;
-use crate::stats::{Estimate, bonferroni_level, normal_quantile, t_quantile, t_upper_tail, two_sided_t};
+use crate::stats::{
+    Estimate, bonferroni_level, jackknife_interval, normal_quantile, t_quantile, t_upper_tail, two_sided_t,
+};
 use entries::{Entry, entries};
 pub use rounding::Rounding;
 use serde::{Deserialize, Serialize};
@@ -82,8 +84,9 @@ pub struct MatrixComparison {
     pub judge_noise: Option<f64>,
     /// The error that they state, as `rms`.
     pub stated_noise: Option<f64>,
-    /// Difference, the judge's part taken out, over the error that they state: about 1 for honest errors.
-    pub honesty: Option<f64>,
+    /// Difference, the judge's part taken out, over the error that they state: about 1 for honest errors. Its interval
+    /// is a jackknife over rows: those of a ray caster are independent.
+    pub honesty: Option<Estimate>,
     /// How their numbers were rounded, where that shows.
     pub rounding: Option<Rounding>,
     /// Root mean square of that rounding.
@@ -122,7 +125,6 @@ pub fn compare_matrices(
     let beyond = all.iter().filter(|e| is_beyond(e, rounding, request, level)).count();
     let known = |f: &FormFactors| f.std_err.is_some();
     let their_square = norms.stated.value();
-    let honesty = ((norms.square.value() - norms.own.value()).max(0.0) / their_square).sqrt();
     let rounded = rounding.map(|r| {
         let square: f64 = theirs.values.iter().map(|v| r.step(*v).powi(2) / 12.0).sum();
         square.sqrt() / cells
@@ -136,7 +138,7 @@ pub fn compare_matrices(
         largest: largest(&all, request),
         judge_noise: known(judge).then(|| norms.own.value().sqrt() / cells),
         stated_noise: known(theirs).then(|| their_square.sqrt() / cells),
-        honesty: (known(theirs) && their_square > 0.0).then_some(honesty),
+        honesty: if known(theirs) { honesty(&all, request.confidence) } else { None },
         rounding,
         rounding_noise: rounded,
         beyond,
@@ -196,6 +198,20 @@ impl Norms {
         };
         (rms, scaled(part(low, size + most), part(value, size), part(high, size - most)))
     }
+}
+
+/// The size of differences in units of the errors that they state.
+fn honesty(all: &[Entry], confidence: f64) -> Option<Estimate> {
+    let of = |row: &[Entry]| {
+        let n = Norms::of(row);
+        (n.square.value() - n.own.value(), n.stated.value())
+    };
+    let (found, stated) = of(all);
+    let ratio = |found: f64, stated: f64| (found.max(0.0) / stated).sqrt();
+    let rows: Vec<(f64, f64)> = all.chunk_by(|a, b| a.row == b.row).map(of).collect();
+    let left_out: Vec<f64> = rows.iter().map(|(f, s)| ratio(found - f, stated - s)).collect();
+    let known = stated > 0.0 && left_out.len() > 1 && left_out.iter().all(|x| x.is_finite());
+    known.then(|| jackknife_interval(ratio(found, stated), &left_out, confidence))
 }
 
 /// The largest difference; its interval holds for all entries at once.

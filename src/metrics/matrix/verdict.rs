@@ -24,8 +24,7 @@ impl MatrixLimits {
 /// Holds a comparison against limits, as [`crate::metrics::decide`] does: failed if the interval lies above a limit,
 /// passed if it does not reach beyond, else open.
 pub fn decide_matrix(comparison: &MatrixComparison, limits: &MatrixLimits) -> Decision {
-    let asked =
-        [("relative", limits.max_rms, comparison.relative), ("largest", limits.max_entry, comparison.largest)];
+    let asked = [("relative", limits.max_rms, comparison.relative), ("largest", limits.max_entry, comparison.largest)];
     let limits: Vec<_> =
         asked.into_iter().filter_map(|(metric, limit, e)| limit.map(|l| outcome(metric, l, Some(e)))).collect();
     Decision { verdict: overall(&limits), limits }
