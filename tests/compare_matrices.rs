@@ -24,7 +24,7 @@ fn cube_box() -> String {
 
 /// The judge's matrix of the cube with a box, kept for one test.
 fn judged(place: &Path) -> String {
-    ok(place, &format!("form-factors {} -o judge.npz --std-err judge-se.npz", cube_box()));
+    ok(place, &format!("form-factors {} -o judge.npz --std-err judge-se.npz --target-error 1e-6", cube_box()));
     format!("--scene {} --reference judge.npz --reference-std-err judge-se.npz", cube_box())
 }
 
@@ -63,8 +63,8 @@ fn correlated_random_numbers_show_in_the_size_of_errors() {
     let place = tempfile::tempdir().expect("a folder");
     let with = judged(place.path());
     let found = compared(place.path(), &with, "mitsuba-correlated", true);
-    // 5 % above what independent rays do.
-    assert!(number(&found, "/comparison/honesty/low") > 1.03, "{found}");
+    // 5.4 % above what independent rays do, 2 % for sure.
+    assert!(number(&found, "/comparison/honesty/low") > 1.01, "{found}");
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn a_transposed_matrix_is_told_by_name() {
 /// Writes the judge's own matrix with each value changed by `f(i, j, value)`.
 fn changed(place: &Path, name: &str, f: impl Fn(usize, usize, f64) -> f64) {
     if !place.join("judge.csv").exists() {
-        ok(place, &format!("form-factors {} -o judge.csv", cube_box()));
+        ok(place, &format!("form-factors {} -o judge.csv --target-error 1e-6", cube_box()));
     }
     let text = std::fs::read_to_string(place.join("judge.csv")).expect("written");
     let mut out = String::from("i,j,form_factor\n");
@@ -149,14 +149,14 @@ fn limits_make_verdicts() {
 #[test]
 fn view3d_with_combined_surfaces_is_compared_by_surface() {
     let place = tempfile::tempdir().expect("a folder");
-    let compare = |name: &str| {
+    let compare = |name: &str, target: &str| {
         let (file, scene) = (data(&format!("view3d/{name}.out.txt")), data(&format!("view3d/{name}.vs3")));
-        json(place.path(), &format!("form-factors compare {file} --scene {scene}"))
+        json(place.path(), &format!("form-factors compare {file} --scene {scene} --target-error {target}"))
     };
-    let facet = compare("facet");
+    let facet = compare("facet", "1e-6");
     assert_eq!((&facet["rows"], number(&facet, "/comparison/rounding/decimals")), (&Value::from("patches"), 6.0));
     assert!(number(&facet, "/comparison/largest/value") < 1e-5, "{facet}");
-    let gunter = compare("gunter1");
+    let gunter = compare("gunter1", "1e-4");
     assert_eq!((&gunter["rows"], number(&gunter, "/comparison/present")), (&Value::from("surfaces"), 16.0));
     assert!((1e-4..1e-2).contains(&number(&gunter, "/comparison/largest/value")), "{gunter}");
 }

@@ -155,7 +155,9 @@ fn explanation(
             relative_after: after,
         })
     };
-    named.or_else(by_rows).map(named_constant)
+    // Rows that differ in their factors also have a common one; it explains far less.
+    let rest = named.as_ref().map_or(f64::INFINITY, |e| e.relative_after);
+    by_rows().filter(|e| e.relative_after < EXPLAINED * EXPLAINED * rest).or(named).map(named_constant)
 }
 
 /// Constants that people multiply by or forget.
