@@ -24,8 +24,8 @@ pub use error::FileError;
 pub use folder::write_folder;
 pub use journal::{Found, Journal};
 pub use matrix::{
-    Level, MatrixFormat, MatrixLayout, MatrixStyle, read_form_factors, read_form_factors_of, write_form_factors,
-    write_matrix,
+    Level, MatrixFormat, MatrixLayout, MatrixStyle, SurfaceRows, read_by_surface, read_form_factors,
+    read_form_factors_of, surface_rows, write_form_factors, write_matrix,
 };
 pub use mesh_values::{MeshValuesOptions, is_mesh_values, read_mesh_values, write_vtu};
 pub use patches::{PatchFormat, write_patches, write_ply_values};

@@ -11,6 +11,7 @@ mod floor;
 mod groups;
 mod histogram;
 mod limits;
+mod matrix;
 mod measure;
 mod noise;
 mod power;
@@ -40,6 +41,10 @@ pub use floor::top1_noise_floor;
 pub use groups::GroupError;
 pub use histogram::Histogram;
 pub use limits::{Limit, Limits, Metric, Place};
+pub use matrix::{
+    EntryDifference, MATRIX_FALSE_ALARM, MatrixComparison, MatrixLimits, MatrixRequest, Rounding, RowDifference,
+    compare_matrices, decide_matrix,
+};
 pub use measure::{Beside, Measured, measure};
 pub use noise::{Beyond, NoiseTest};
 pub use rates::{FLOOR_FACTOR, Point, Rate, Reached, fit_rate, reached};

@@ -24,11 +24,11 @@ pub fn shared_confidence(confidence: f64, limits: &Limits) -> f64 {
 ///
 /// A limit on a metric that could not be had (no state before, or a dark one) is open.
 pub fn decide(measured: &[Measured]) -> Decision {
-    let limits: Vec<LimitOutcome> = measured.iter().map(outcome).collect();
+    let limits: Vec<LimitOutcome> = measured.iter().map(of_measured).collect();
     Decision { verdict: overall(&limits), limits }
 }
 
-fn overall(limits: &[LimitOutcome]) -> Verdict {
+pub(super) fn overall(limits: &[LimitOutcome]) -> Verdict {
     let any = |v: Verdict| limits.iter().any(|l| l.verdict == v);
     if any(Verdict::Fail) {
         Verdict::Fail
@@ -39,25 +39,29 @@ fn overall(limits: &[LimitOutcome]) -> Verdict {
     }
 }
 
-fn outcome(measured: &Measured) -> LimitOutcome {
+/// One limit of a comparison.
+fn of_measured(measured: &Measured) -> LimitOutcome {
     let Measured { limit, estimate, smallest_caught } = measured;
+    let mut one = outcome(&limit.key(), limit.max, *estimate);
+    if limit.unless_sure && estimate.is_some() && one.verdict == Verdict::Inconclusive {
+        (one.verdict, one.rays_factor) = (Verdict::Pass, None);
+    }
+    LimitOutcome { smallest_caught: *smallest_caught, ..one }
+}
+
+/// Holds one estimate against one limit.
+pub(super) fn outcome(metric: &str, limit: f64, estimate: Option<Estimate>) -> LimitOutcome {
     let known = estimate.unwrap_or(Estimate { value: 0.0, std_err: None, low: 0.0, high: f64::MAX });
-    let verdict = if known.low > limit.max {
+    let verdict = if known.low > limit {
         Verdict::Fail
-    } else if known.high <= limit.max || (limit.unless_sure && estimate.is_some()) {
+    } else if known.high <= limit {
         Verdict::Pass
     } else {
         Verdict::Inconclusive
     };
     let open = verdict == Verdict::Inconclusive && estimate.is_some();
-    LimitOutcome {
-        metric: limit.key(),
-        limit: limit.max,
-        estimate: known,
-        verdict,
-        rays_factor: if open { rays_factor(&known, limit.max) } else { None },
-        smallest_caught: *smallest_caught,
-    }
+    let rays_factor = if open { rays_factor(&known, limit) } else { None };
+    LimitOutcome { metric: metric.to_string(), limit, estimate: known, verdict, rays_factor, smallest_caught: None }
 }
 
 /// About how many times the rays would decide an open limit, if the value stays where it is: half-widths shrink

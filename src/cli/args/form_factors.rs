@@ -74,6 +74,8 @@ impl FromArgMatches for FormFactorsCommand {
 pub enum MatrixCommand {
     /// Row sums, reciprocity, impossible entries, classic mistakes. Exit 1 if the matrix breaks physics for sure.
     Check(FormFactorsCheckArgs),
+    /// Entry by entry against the judge's: how far off, beyond which errors, and who breaks physics there.
+    Compare(FormFactorsCompareArgs),
     /// The most likely matrix that is closed, reciprocal and nowhere negative. Exit 1 if a row could not be closed.
     Repair(FormFactorsRepairArgs),
 }
@@ -110,6 +112,35 @@ pub struct FormFactorsCheckArgs {
     /// Randomisations behind the standard errors: few make them uncertain themselves.
     #[arg(long, value_name = "R", default_value_t = 16, value_parser = clap::value_parser!(u16).range(2..))]
     pub randomisations: u16,
+}
+
+/// `etalon form-factors compare`
+#[derive(Debug, Args)]
+pub struct FormFactorsCompareArgs {
+    /// Their matrix.
+    #[command(flatten)]
+    pub matrix: MatrixArgs,
+    /// How the judge computes.
+    #[command(flatten)]
+    pub rays: RayArgs,
+    /// The judge's form factors as stored, instead of computing them: .npz, .csv, .mtx or .vf, a row per patch.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["rays", "target_error", "max_time", "seed", "estimator"])]
+    pub reference: Option<PathBuf>,
+    /// Standard errors of that file, .npz or .mtx; without them it counts as exact.
+    #[arg(long, value_name = "FILE", requires = "reference")]
+    pub reference_std_err: Option<PathBuf>,
+    /// Limit on the relative norm of the difference, sqrt(sum d^2) / sqrt(sum F^2): 0.01 or 1%.
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
+    pub max_rms: Option<Fraction>,
+    /// Limit on the difference of every form factor.
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
+    pub max_entry: Option<Fraction>,
+    /// Confidence of the intervals: two-sided, simultaneous over the limits given.
+    #[arg(long, default_value = "0.95", value_name = "C", allow_hyphen_values = true)]
+    pub confidence: Fraction,
+    /// Randomisations or batches behind the standard errors that they state.
+    #[arg(long, value_name = "R", default_value_t = 16, value_parser = clap::value_parser!(u32).range(2..))]
+    pub their_randomisations: u32,
 }
 
 /// `etalon form-factors repair`

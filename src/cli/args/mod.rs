@@ -21,7 +21,8 @@ pub use brought::{BroughtArgs, Up};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
 pub use convert::ConvertArgs;
 pub use form_factors::{
-    FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsRepairArgs, MatrixArgs, MatrixCommand,
+    FormFactorsArgs, FormFactorsCheckArgs, FormFactorsCommand, FormFactorsCompareArgs, FormFactorsRepairArgs,
+    MatrixArgs, MatrixCommand,
 };
 pub use judge::{Causes, CheckArgs, CompareArgs, OnInconclusive};
 pub use rays::{Estimator, RayArgs, SuiteArgs};

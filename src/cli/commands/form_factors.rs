@@ -56,15 +56,15 @@ pub fn run(args: &FormFactorsArgs, kernel: KernelKind, console: &Console) -> Res
 const WITNESS_RAYS: u64 = 256;
 
 /// Pairs settled without rays, and the rays.
-struct Work {
+pub(super) struct Work {
     pairs: Option<PairFactors>,
     casting: Casting,
     /// Relative error of the whole matrix.
-    relative_error: f64,
+    pub(super) relative_error: f64,
 }
 
 impl Work {
-    fn of(session: &Session, plan: &Plan, seed: u64, console: &Console) -> Self {
+    pub(super) fn of(session: &Session, plan: &Plan, seed: u64, console: &Console) -> Self {
         let stage = session.stage();
         let emitters = patch_emitters(stage);
         let present = emitters.iter().flatten().count() as u64;
@@ -88,12 +88,12 @@ impl Work {
     }
 
     /// What was settled without rays, counted by rays and summed up.
-    fn checks(&self, session: &Session, f: &FormFactors) -> SelfCheck {
+    pub(super) fn checks(&self, session: &Session, f: &FormFactors) -> SelfCheck {
         let of = |p| check_pairs(session.stage(), p, &self.casting.counts, f, session.is_enclosure());
         SelfCheck { checks: self.pairs.as_ref().map_or(Vec::new(), of) }
     }
 
-    fn blend(&self) -> Blend<'_> {
+    pub(super) fn blend(&self) -> Blend<'_> {
         blend(self.pairs.as_ref(), &self.casting.counts)
     }
 

@@ -17,6 +17,8 @@ mod convert;
 mod demo;
 mod form_factors;
 mod form_factors_check;
+mod form_factors_compare;
+mod form_factors_compare_told;
 mod form_factors_repair;
 mod form_factors_told;
 mod inputs;
@@ -46,6 +48,9 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::FormFactors(FormFactorsCommand::Cast(args)) => form_factors::run(args, kernel, console),
         Command::FormFactors(FormFactorsCommand::Matrix(MatrixCommand::Check(args))) => {
             form_factors_check::run(args, kernel, console)
+        }
+        Command::FormFactors(FormFactorsCommand::Matrix(MatrixCommand::Compare(args))) => {
+            form_factors_compare::run(args, kernel, console)
         }
         Command::FormFactors(FormFactorsCommand::Matrix(MatrixCommand::Repair(args))) => {
             form_factors_repair::run(args, kernel, console)

@@ -1,5 +1,6 @@
 //! Form-factor matrices: `.npz` (SciPy CSR), `.csv`, Matrix Market `.mtx`, View3D's output, EnergyPlus objects.
 
+mod by_surface;
 mod csv;
 mod energyplus;
 mod entries;
@@ -12,6 +13,7 @@ mod view3d;
 use super::FileError;
 use crate::scene::{OBSTRUCTIONS, Stage};
 use crate::solution::FormFactors;
+pub use by_surface::{SurfaceRows, read_by_surface, surface_rows};
 use entries::{Entries, Reader};
 pub use layout::{Level, MatrixFormat, MatrixLayout, MatrixStyle};
 use rows::{Rows, merged};

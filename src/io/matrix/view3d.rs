@@ -16,7 +16,7 @@ const MOST_ROWS: usize = 20_000;
 /// Length of the header of View3D, line end included.
 const HEADER: usize = 32;
 /// How far areas may differ from those of the scene: View3D writes six digits.
-const AREA_TOLERANCE: f64 = 2e-5;
+pub(super) const AREA_TOLERANCE: f64 = 2e-5;
 
 /// The matrix, or its standard errors, as text.
 pub(super) fn write(
@@ -85,7 +85,7 @@ fn number(x: f64) -> String {
 /// View3D's output, taken apart.
 pub(super) struct Output {
     pub n: usize,
-    areas: Vec<f64>,
+    pub areas: Vec<f64>,
     values: Vec<f64>,
     /// Standard errors that our own files carry; NaN where a pair has none.
     errors: Option<Vec<f64>>,
