@@ -23,6 +23,7 @@ mod inputs;
 mod limits;
 mod looks;
 mod machine;
+mod manual;
 mod receivers;
 mod reference;
 mod render;
@@ -66,6 +67,8 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Receivers(args) => receivers::run(args, kernel, console),
         Command::Validate(command) => validate::run(command, kernel, console),
         Command::Setup(command) => machine::setup(command, console),
+        Command::Completions(args) => manual::completions(args, console),
+        Command::Man(args) => manual::man(args, console),
         Command::Schema => {
             Console::print(include_str!("../../../references/schema/check.schema.json").trim_end());
             Ok(super::exit::DONE)
