@@ -7,6 +7,7 @@ mod converge;
 mod convert;
 mod form_factors;
 mod judge;
+mod manual;
 mod rays;
 mod reference;
 mod render;
@@ -25,6 +26,8 @@ pub use form_factors::{
     MatrixArgs, MatrixCommand,
 };
 pub use judge::{Causes, CheckArgs, CompareArgs, OnInconclusive};
+pub use judge::{CheckArgs, CompareArgs, OnInconclusive};
+pub use manual::{CompletionsArgs, ManArgs};
 pub use rays::{Estimator, RayArgs, SuiteArgs};
 pub use reference::{ReferenceArgs, Truth};
 pub use render::{OnOff, RenderArgs, RenderStyle};
@@ -137,6 +140,10 @@ pub enum Command {
     Setup(SetupCommand),
     /// Ray kernels found, threads, self-test.
     Doctor,
+    /// The script that completes commands and options in a shell.
+    Completions(CompletionsArgs),
+    /// Manual pages, one per command.
+    Man(ManArgs),
     /// The JSON Schema of what `check --json` and `compare --json` print.
     Schema,
 }

@@ -25,6 +25,7 @@ mod inputs;
 mod limits;
 mod looks;
 mod machine;
+mod manual;
 mod receivers;
 mod reference;
 mod render;
@@ -71,6 +72,8 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Receivers(args) => receivers::run(args, kernel, console),
         Command::Validate(command) => validate::run(command, kernel, console),
         Command::Setup(command) => machine::setup(command, console),
+        Command::Completions(args) => manual::completions(args, console),
+        Command::Man(args) => manual::man(args, console),
         Command::Schema => {
             Console::print(include_str!("../../../references/schema/check.schema.json").trim_end());
             Ok(super::exit::DONE)
