@@ -265,3 +265,79 @@ fn completions_of_options_do_not_clash() {
     }
     assert!(etalon(place.path()).args(["schema"]).output().expect("it runs").status.success());
 }
+
+/// A solution file with every value times a factor.
+fn times(here: &Path, from: &str, to: &str, factor: f64) {
+    let text = std::fs::read_to_string(here.join(from)).expect("written");
+    let line = |l: &str| {
+        let mut cells: Vec<String> = l.split(',').map(String::from).collect();
+        cells[1..].iter_mut().for_each(|c| *c = c.parse::<f64>().map_or(c.clone(), |x| format!("{}", factor * x)));
+        cells.join(",") + "\n"
+    };
+    std::fs::write(here.join(to), text.lines().map(line).collect::<String>()).expect("writable");
+}
+
+#[test]
+fn their_mesh_and_their_units_are_judged_like_our_own() {
+    let place = workshop();
+    let here = place.path();
+    let rms = |arguments: &str| {
+        let v = json(here, &format!("compare {arguments} --reference ref"));
+        v["rms"]["value"].as_f64().expect("a number")
+    };
+    let own = rms("fine.csv");
+    for mesh in ["fine.ply", "fine.vtu"] {
+        ok(here, &format!("convert fine.csv --scene builtin:cornell-box-coarse -o {mesh}"));
+        assert!((rms(mesh) / own - 1.0).abs() < 1e-5, "{mesh}: {} {own}", rms(mesh));
+    }
+    times(here, "fine.csv", "radiance.csv", 1.0 / std::f64::consts::PI);
+    assert!((rms("radiance.csv --quantity radiance") / own - 1.0).abs() < 1e-9);
+    times(here, "fine.csv", "exposed.csv", 4.0);
+    assert!((rms("exposed.csv --factor 0.25") / own - 1.0).abs() < 1e-9);
+    // Not said, it is found out: by name, wherever a verdict is told.
+    let (code, v) = told(here, "check radiance.csv --reference ref --max-rms 5%");
+    assert_eq!((code, v["causes"][0]["kind"].as_str()), (1, Some("radiance")), "{v}");
+    let (_, text, _) =
+        run(here, "check radiance.csv --reference ref --max-rms 5% --junit j.xml --markdown m.md --quiet");
+    let files = ["j.xml", "m.md"].map(|f| std::fs::read_to_string(here.join(f)).expect("written"));
+    for told in [&text, &files[0], &files[1]] {
+        assert!(told.contains("radiance"), "{told}");
+    }
+    // A right one is not accused, and nobody looks where it is not asked for.
+    let v = told(here, "check fine.csv --reference ref --max-rms 5% --causes always").1;
+    assert_eq!(v["causes"].as_array().expect("a list").len(), 0, "{v}");
+    assert_eq!(
+        told(here, "check radiance.csv --reference ref --max-rms 5% --causes never").1["causes"][0],
+        Value::Null
+    );
+    assert!(refused(here, "compare fine.ply --reference fine.csv").contains("--scene"));
+    assert!(refused(here, "compare fine.csv --reference ref --units mm").contains("--units"));
+}
+
+#[test]
+fn patches_without_a_value_are_named_or_left_out_on_demand() {
+    let place = workshop();
+    let here = place.path();
+    ok(here, "convert fine.csv --scene builtin:cornell-box-coarse -o fine.ply");
+    // The first face goes.
+    let text = std::fs::read_to_string(here.join("fine.ply")).expect("written");
+    let head: Vec<&str> = text.lines().take_while(|l| *l != "end_header").collect();
+    let count = |what: &str| -> usize {
+        let line = head.iter().find_map(|l| l.strip_prefix(what)).expect("an element");
+        line.trim().parse().expect("a number")
+    };
+    let (faces, vertices) = (count("element face"), count("element vertex"));
+    let body = head.len() + 1 + vertices;
+    let cut: String = text
+        .lines()
+        .enumerate()
+        .filter(|(k, _)| *k != body)
+        .map(|(_, l)| l.replace(&format!("element face {faces}"), &format!("element face {}", faces - 1)) + "\n")
+        .collect();
+    std::fs::write(here.join("cut.ply"), cut).expect("writable");
+    let what = refused(here, "check cut.ply --reference ref --max-rms 5%");
+    assert!(what.contains("--skip-unmatched"), "{what}");
+    let (code, v) = told(here, "check cut.ply --reference ref --max-rms 5% --skip-unmatched");
+    assert_eq!(code, 0, "{v}");
+    assert!(v["notices"].to_string().contains("left out"), "{v}");
+}

@@ -355,3 +355,30 @@ fn no_change_of_a_reference_makes_its_reader_panic() {
     assert!(seeds.len() > 3 && seeds.iter().all(|s| fuzz::reference(s)));
     tried("reference", fuzz::reference, &seeds, 600);
 }
+
+/// Every reader for as long as is asked (`ETALON_FUZZ_SECONDS`, five minutes each without), on changes that the short test
+/// does not make: `cargo test --release --test properties long -- --ignored --nocapture`. `ETALON_FUZZ_TARGETS` names some.
+#[test]
+#[ignore = "takes minutes for each reader"]
+fn a_long_run_makes_no_reader_panic() {
+    let of = |name: &str| std::env::var(name).ok();
+    let seconds: u64 = of("ETALON_FUZZ_SECONDS").map_or(300, |s| s.parse().expect("a number of seconds"));
+    let chosen = of("ETALON_FUZZ_TARGETS");
+    let wanted = |name: &str| chosen.as_ref().is_none_or(|c| c.split(',').any(|c| c == name));
+    for (name, target) in TARGETS.iter().filter(|(name, _)| wanted(name)) {
+        let (seeds, begin) = (seeds(name), std::time::Instant::now());
+        let mut dice = Dice(0x5eed ^ name.bytes().map(u64::from).sum::<u64>());
+        let (mut tried, mut slowest) = (0u64, std::time::Duration::ZERO);
+        while begin.elapsed().as_secs() < seconds {
+            let (seed, other) = (dice.roll(seeds.len()), dice.roll(seeds.len()));
+            let data = mutated(&seeds[seed], &seeds[other], &mut dice);
+            let since = std::time::Instant::now();
+            if std::panic::catch_unwind(|| target(&data)).is_err() {
+                panic!("{name}, change {tried}: a panic on {:?}", String::from_utf8_lossy(&data));
+            }
+            slowest = slowest.max(since.elapsed());
+            tried += 1;
+        }
+        println!("{name}: {tried} changed files in {seconds} s, none panics, the slowest took {slowest:.2?}");
+    }
+}
