@@ -16,8 +16,7 @@
 #
 # Exit code: 0 passed, 1 failed, 3 inconclusive; 2 and anything else: there is no verdict.
 set -u
-: "${SCENE:?say which scene: SCENE=room.toml}"
-: "${SOLVER:=}" "${LIMITS:=--reflected --max-rms 5%}" "${REFERENCE:=--rays 16384}"
+: "${SCENE:=}" "${SOLVER:=}" "${LIMITS:=--reflected --max-rms 5%}" "${REFERENCE:=--rays 16384}"
 : "${ACCEPTED:=}" "${CHANGE:=--max-worst 1%}"
 : "${OUTPUT:=etalon-check}" "${CACHE:=.etalon-cache}" "${ETALON:=etalon}"
 : "${SOLUTION:=$OUTPUT/solution.csv}"
@@ -26,6 +25,7 @@ export SCENE PATCHES SOLUTION
 
 no_verdict() { echo "check.sh: $1" >&2; exit "${2:-2}"; }
 
+[ -n "$SCENE" ] || no_verdict "say which scene: SCENE=room.toml"
 mkdir -p "$OUTPUT" "$CACHE" || no_verdict "cannot make the folders $OUTPUT and $CACHE"
 
 # A reference is computed once. Its key changes with the scene, the options, the ray kernel and the version of etalon.

@@ -5,7 +5,7 @@
     python3 solver.py SCENE.toml patches.csv -o solution.csv
 
 It shares nothing with etalon but the list of patches. Form factors: the closed form from sample points on the smaller
-of two patches to the whole of the other, times the share of it that rays see. The system is solved by Gauss-Seidel.
+of two patches to the other, times the share of it that rays see. The system is solved by Gauss-Seidel.
 With --bug NAME it makes one well-known mistake. The same seed gives the same bytes.
 """
 
@@ -18,7 +18,7 @@ import tomllib
 from dataclasses import dataclass
 
 BUGS = {
-    "one-patch": "the worst of bugs to see: the patch in the middle of the list is 5 % too bright",
+    "one-patch": "the patch in the middle of the list is 5 % too bright",
     "bright": "everything is 1 % too bright",
     "no-occluder": "light goes through everything",
     "swapped-materials": "the reflectances of the last two materials without emission are mixed up",
@@ -29,7 +29,7 @@ BUGS = {
     "transposed": "the matrix of form factors is used with rows and columns exchanged",
 }
 EPSILON = 1e-9  # metres: what lies nearer to a plane lies in it
-RAYS = 8         # the points of a patch are shared out among so many of the other's: n * n / RAYS rays a point
+RAYS = 8         # each point of a patch looks at one in so many of the points on the other
 SLACK = 2e-3    # of the size of a scene: a wall that bends by less still counts as flat
 
 
@@ -63,6 +63,9 @@ class Patch:
 
     def __post_init__(self):
         self.offset = dot(self.normal, self.corners[0])
+        first, *rest = self.corners
+        whole = sum(math.hypot(*cross(sub(b, first), sub(c, first))) / 2 for b, c in zip(rest, rest[1:]))
+        self.is_stood_on = self.area < whole * (1 - 1e-6)
         self.low = [min(c[k] for c in self.corners) for k in range(3)]
         self.high = [max(c[k] for c in self.corners) for k in range(3)]
         # Planes through the edges, along the normal: a point of the plane is inside if it is left of all of them.
@@ -121,15 +124,25 @@ def points_on(patch, n, draw):
     return points
 
 
+def touch(one, other):
+    """Do two patches lie on each other? The back of a thin plate lies there too: but nothing of its area is gone."""
+    opposed = dot(one.normal, other.normal) < EPSILON - 1 and abs(one.height(other.corners[0])) < EPSILON
+    return opposed and one.is_stood_on and other.is_stood_on
+
+
 def place_points(patches, n, draw):
     """Points that light leaves from (`free`), and points it may arrive at, some of them under what stands there."""
     for patch in patches:
-        across = [p for p in patches if dot(p.normal, patch.normal) < -1 + EPSILON and abs(patch.height(p.corners[0])) < EPSILON]
-        finer = 2 * n if any(patch.emission) else n
-        patch.targets = [(point, any(p.covers(point) for p in across)) for point in points_on(patch, finer, draw)]
-        patch.free = [point for point in points_on(patch, n, lambda: 0.5) if not any(p.covers(point) for p in across)]
+        across = [p for p in patches if touch(patch, p)]
+
+        def place(count, draw):
+            return [(x, any(p.covers(x) for p in across)) for x in points_on(patch, count, draw)]
+
+        # A lamp deserves more: its shadows are the sharpest.
+        patch.targets = place(2 * n if any(patch.emission) else n, draw)
+        patch.free = [x for x, covered in place(n, lambda: 0.5) if not covered]
         while patch.area and len(patch.free) < n * n:
-            patch.free += [point for point in points_on(patch, n, draw) if not any(p.covers(point) for p in across)]
+            patch.free += [x for x, covered in place(n, draw) if not covered]
 
 
 def before(patch, corners):
@@ -197,7 +210,7 @@ def exchanges(patches, n, seed, blind):
     """A_i F_ij of all pairs. What has nothing behind it, such as the walls of a convex room, hides nothing."""
     place_points(patches, n, random.Random(seed).random)
     corners = [c for p in patches for c in p.corners]
-    slack = SLACK * math.dist([min(c[k] for c in corners) for k in range(3)], [max(c[k] for c in corners) for k in range(3)])
+    slack = SLACK * math.dist(*[[limit(c[k] for c in corners) for k in range(3)] for limit in (min, max)])
     hiding = [] if blind else [p for p in patches if min(map(p.height, corners)) < -slack]
     ahead = [[b for b in hiding if max(map(p.height, b.corners)) > EPSILON] for p in patches]
     matrix = [[0.0] * len(patches) for _ in patches]

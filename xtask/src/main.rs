@@ -1,5 +1,6 @@
 //! `cargo xtask demo`, `cargo xtask test`, `cargo xtask ci`: the set-up that a bare machine needs, and the work.
 
+mod dist;
 mod exact;
 mod peers;
 
@@ -11,6 +12,7 @@ const HELP: &str = "\
 cargo xtask demo   build, provide Embree if there is none, run the Cornell box to a report
 cargo xtask test   the same set-up, then every test, also those of the feature embree4-rs
 cargo xtask ci     formatting, lints and documentation, all with warnings as errors
+cargo xtask dist   an archive that installs without a checkout, unpacked and run as proof (--help says more)
 cargo xtask exact  exact form factors of obstructed pairs, from standard input to standard output
 cargo xtask peers  other programs for form factors beside etalon: error against time (--help says more)
 Further arguments go to `etalon demo` or `cargo test`.";
@@ -29,6 +31,7 @@ fn main() -> ExitCode {
         Some("demo") => demo(&rest),
         Some("test") => test(&rest),
         Some("ci") => ci(),
+        Some("dist") => dist::dist(&rest),
         Some("peers") => peers::peers(&rest),
         Some("exact") => exact::run(threads()).map_err(Stopped),
         Some("help" | "--help" | "-h") => {
