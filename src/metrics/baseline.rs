@@ -192,7 +192,7 @@ mod tests {
         let old: Vec<f64> = truth.iter().enumerate().map(|(i, y)| y * if i % 2 == 0 { 1.02 } else { 0.98 }).collect();
         let new: Vec<f64> = truth.iter().enumerate().map(|(i, y)| y * if i % 2 == 0 { 1.021 } else { 0.979 }).collect();
         let areas = vec![1.0; n];
-        let known = growth(&areas, &new, &old, &[truth.clone()], 0.95).unwrap().value;
+        let known = growth(&areas, &new, &old, std::slice::from_ref(&truth), 0.95).unwrap().value;
         let (mut missed, mut seen) = (0, 0);
         for _ in 0..300 {
             let rows: Vec<Vec<f64>> = (0..16)

@@ -2,7 +2,7 @@
 
 use super::asked::{Level, is_reflected};
 use super::format::{confidence, is_known, percent, percent_estimate, percent_exact, significant};
-use crate::metrics::{Comparison, LimitOutcome, Verdict};
+use crate::metrics::{Comparison, LimitOutcome, Scale, Verdict};
 use crate::stats::Estimate;
 use crate::study::{Cause, Record};
 
@@ -142,7 +142,7 @@ pub fn warnings(record: &Record) -> Vec<(String, String)> {
     }
     match record.causes.first() {
         Some(cause) => all.push(cause_found(cause)),
-        None => all.extend(scale_warning(c)),
+        None => all.extend(scale_warning(c, is_reflected(record))),
     }
     if let (Some(floor), Some(decision)) = (c.reference_noise_floor, &record.decision)
         && let Some(tight) = decision.limits.iter().map(|l| l.limit).reduce(f64::min)
@@ -171,8 +171,10 @@ fn cause_found(cause: &Cause) -> (String, String) {
 }
 
 /// A factor that explains most of the error is what a developer looks at first.
-fn scale_warning(c: &Comparison) -> Option<(String, String)> {
-    let total = c.scale_of_total.as_ref().filter(|s| s.explains(c.rms.value)).map(|s| (s, "The solution"));
+fn scale_warning(c: &Comparison, judged_reflected: bool) -> Option<(String, String)> {
+    // What a factor of all light leaves says nothing about an error of the reflected part alone.
+    let explains = |s: &&Scale| !judged_reflected && s.explains(c.rms.value);
+    let total = c.scale_of_total.as_ref().filter(explains).map(|s| (s, "The solution"));
     let reflected = || {
         let rms = c.rms_reflected?.value;
         c.scale.as_ref().filter(|s| s.explains(rms)).map(|s| (s, "The reflected light of the solution"))

@@ -26,7 +26,6 @@ pub use form_factors::{
     MatrixArgs, MatrixCommand,
 };
 pub use judge::{Causes, CheckArgs, CompareArgs, OnInconclusive};
-pub use judge::{CheckArgs, CompareArgs, OnInconclusive};
 pub use manual::{CompletionsArgs, ManArgs};
 pub use rays::{Estimator, RayArgs, SuiteArgs};
 pub use reference::{ReferenceArgs, Truth};

@@ -18,6 +18,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
 
+/// Corners of a face in the space of its shape, and its group.
+type Outline = (Vec<DVec3>, Option<u32>);
+
 /// What a file is read into.
 #[derive(Default)]
 pub(super) struct Parts {
@@ -207,13 +210,7 @@ impl Gatherer<'_> {
     }
 
     /// Outlines of a shape in its own space with their groups, and the names of these.
-    fn outlines(
-        &mut self,
-        at: Id,
-        shape: &Shape,
-        name: &str,
-        material: u32,
-    ) -> Checked<(Vec<(Vec<DVec3>, Option<u32>)>, Vec<String>)> {
+    fn outlines(&mut self, at: Id, shape: &Shape, name: &str, material: u32) -> Checked<(Vec<Outline>, Vec<String>)> {
         let file = match &shape.geometry {
             Geometry::Outlines(own) => return Ok((own.iter().map(|o| (o.clone(), None)).collect(), Vec::new())),
             Geometry::Mesh(file) => *file,
