@@ -424,7 +424,7 @@ fn bands_are_carried_side_by_side_and_chosen_by_place() {
     let swapped = carried(&select_bands(&values, &[1, 0]), &stage);
     assert_eq!(swapped.values.of(1), [5.0, c.values.of(1)[0]]);
     // Variance 1/12 in one band; values 0.5 or 1.5, and 5.
-    let expected = ((1.0 / 12.0) / (25.0 + (0.25 + 2.25) / 2.0) as f64).sqrt();
+    let expected = (1.0f64 / 12.0 / (25.0 + (0.25 + 2.25) / 2.0)).sqrt();
     assert!((c.relative_spread().unwrap() - expected).abs() < 1e-14);
 }
 

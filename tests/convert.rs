@@ -57,13 +57,16 @@ fn rows(folder: &Path, name: &str) -> Vec<(usize, Vec<f64>)> {
     text.lines().skip(1).map(row).collect()
 }
 
+/// Options with what they make of a value.
+type Quantity = (&'static str, fn(f64) -> f64);
+
 const CONVERT: &str = "convert mesh.obj --values values.csv --scene scene.toml";
 
 #[test]
 fn values_of_a_mesh_in_every_quantity() {
     let folder = folder(1.0, 5);
     let at = folder.path();
-    let radiosity: [(&str, fn(f64) -> f64); 5] = [
+    let radiosity: [Quantity; 5] = [
         ("", |v| v),
         ("--quantity radiance", |v| PI * v),
         ("--quantity reflected", |v| 1.0 + v),
