@@ -275,10 +275,12 @@ def main():
     parser.add_argument("scene", help="scene file (.toml, polygons)")
     parser.add_argument("patches", help="what `etalon scene patches SCENE -o patches.csv` wrote")
     parser.add_argument("-o", "--output", required=True, help="solution: patch and radiosity per band, W/m^2")
-    parser.add_argument("--points", type=int, default=4, metavar="N", help="N x N sample points a patch (default 4)")
+    parser.add_argument("--points", type=int, default=4, metavar="N", help="N x N sample points a patch, N even (default 4)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--bug", choices=BUGS, metavar="NAME", help="one of: " + ", ".join(BUGS))
     options = parser.parse_args()
+    if options.points < 2 or options.points % 2:
+        parser.error("--points has to be even, and at least 2")
     patches, bands = read_scene(options.scene, options.patches)
     if options.bug == "swapped-materials":
         swap_reflectances(patches)
