@@ -30,7 +30,9 @@ fn the_furnace_is_exact() {
     let (stage, b) = (&r.stage, r.patches.mean());
     for i in 0..stage.patch_count() {
         let (rho, e) = (stage.reflectance(i)[0], stage.emission(i)[0]);
-        assert!((b.of(i)[0] / (e / (1.0 - rho)) - 1.0).abs() < 1e-9, "{i}");
+        let (off, se) = ((b.of(i)[0] - e / (1.0 - rho)).abs(), b.std_err_of(i).expect("stated")[0]);
+        // Eight replicates, 184 patches: beyond 12 of their errors once in a thousand runs.
+        assert!(off <= 12.0 * se + 1e-12 && off < 1e-7, "{i}: {off:e} {se:e}");
     }
 }
 

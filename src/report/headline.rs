@@ -161,9 +161,11 @@ pub fn warnings(record: &Record) -> Vec<(String, String)> {
 
 /// The mistake that the error looks like.
 fn cause_found(cause: &Cause) -> (String, String) {
+    let mut letters = cause.sentence.chars();
+    let first = letters.next().map_or(String::new(), |c| c.to_uppercase().to_string());
     let text = format!(
-        "{} This explains {} of the squared error; {} are left.",
-        cause.sentence,
+        "{first}{}. This explains {} of the squared error; {} are left.",
+        letters.as_str(),
         percent(cause.explains),
         percent(cause.left)
     );
