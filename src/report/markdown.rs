@@ -44,7 +44,8 @@ fn markdown(record: &Record, picture: Option<&str>) -> String {
         push(&format!("> **{}.** {}", escape(&title), escape(&text)));
     }
     let lines = metric_lines(record);
-    let drawn: Vec<String> = lines.iter().filter_map(bar).collect();
+    let longest = lines.iter().filter(|l| l.limit_value.is_some()).map(|l| key(&l.key).chars().count()).max();
+    let drawn: Vec<String> = lines.iter().filter_map(|l| bar(l, longest.unwrap_or(0))).collect();
     if !drawn.is_empty() {
         push(&format!("```text\n{}\n```", drawn.join("\n")));
     }
@@ -67,8 +68,8 @@ fn markdown(record: &Record, picture: Option<&str>) -> String {
 /// Cells of a drawn limit.
 const CELLS: usize = 48;
 
-/// An interval against its limit, drawn in text: it shows also where pictures do not. `None` without a limit.
-fn bar(line: &MetricLine) -> Option<String> {
+/// An interval against its limit, drawn in text, its name filled up to `longest` letters: it shows also where pictures do not. `None` without a limit.
+fn bar(line: &MetricLine, longest: usize) -> Option<String> {
     let (e, limit) = (line.estimate?, line.limit_value?);
     let (least, most) = (e.low.min(0.0), e.high.max(limit) * 1.05);
     let cell = |x: f64| (((x - least) / (most - least) * (CELLS - 1) as f64).round() as usize).min(CELLS - 1);
@@ -81,7 +82,7 @@ fn bar(line: &MetricLine) -> Option<String> {
     cells[cell(e.value)] = '\u{25cf}';
     let cells: String = cells.iter().collect();
     let limit = line.limit.as_deref().unwrap_or_default();
-    Some(format!("{} |{cells}| {}, limit {limit}", key(&line.key), line.value))
+    Some(format!("{:<longest$} |{cells}| {}, limit {limit}", key(&line.key), line.value))
 }
 
 fn icon(verdict: Option<Verdict>) -> &'static str {
