@@ -39,11 +39,12 @@ fn save(args: &BaselineSaveArgs, console: &Console) -> Result<u8, Failure> {
     let options: Vec<String> =
         suggested.iter().map(|l| format!("--max-{} {}%", l.key(), shortest(100.0 * l.max))).collect();
     let text = format!(
-        "{}: baseline of {} written\n  no worse than it:  etalon check MINE --reference {} --baseline {}\n  \
+        "{}: baseline of {} written\n  no worse than it:  etalon check MINE --reference {}{} --baseline {}\n  \
          limits it keeps:   {}",
         path.display(),
         args.compare.solution.display(),
         args.compare.reference.display(),
+        if args.compare.reflected { " --reflected" } else { "" },
         path.display(),
         options.join(" ")
     );
