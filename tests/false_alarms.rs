@@ -12,7 +12,7 @@ use etalon::estimate::Plan;
 use etalon::metrics::{Judged, Limits, Truth, Verdict, compare, decide};
 use etalon::raycast::KernelKind;
 use etalon::reference::{Evidence, Options, compute};
-use etalon::scene::Grid;
+use etalon::scene::{Grid, Stage};
 use etalon::solution::Radiosity;
 use etalon::study::{JudgeError, Judgement, Seen, Session, until_decided};
 
@@ -37,22 +37,32 @@ fn candidate(rms: f64) -> Radiosity {
     Radiosity { bands: 1, values, std_err: None }
 }
 
-/// Shares of (fail, pass, inconclusive) over fresh references with so many rays per patch.
-fn verdicts(rays: u64, rms: f64, references: u64) -> [f64; 3] {
+/// The cube, one patch a face, the first one emitting.
+fn cube() -> Stage {
     let mut cube = Polygons::new(1);
     for (k, face) in unit_cube().into_iter().enumerate() {
         cube.add(face, Grid::Quad { na: 1, nb: 1 }, &[0.8], &[f64::from(u8::from(k == 0))]);
     }
-    let stage = cube.stage();
-    let session = Session::open(&stage, KernelKind::Builtin).expect("built in");
-    let (solution, bands) = (candidate(rms), ["b0".to_string()]);
-    let judged = Judged {
+    cube.stage()
+}
+
+/// Its faces before the judge.
+fn judged(bands: &[String]) -> Judged<'_> {
+    Judged {
         areas: &[1.0; 6],
         emission: &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         surfaces: &["face"; 6],
-        bands: &bands,
+        bands,
         weights: &[1.0],
-    };
+    }
+}
+
+/// Shares of (fail, pass, inconclusive) over fresh references with so many rays per patch.
+fn verdicts(rays: u64, rms: f64, references: u64) -> [f64; 3] {
+    let stage = cube();
+    let session = Session::open(&stage, KernelKind::Builtin).expect("built in");
+    let (solution, bands) = (candidate(rms), ["b0".to_string()]);
+    let judged = judged(&bands);
     let limits = Limits::rms(LIMIT);
     let mut counts = [0u64; 3];
     for seed in 0..references {
@@ -84,20 +94,10 @@ fn at_the_limit_both_errors_keep_their_rates() {
 /// rays it asked for (`most` at most), and stops as soon as it knows; and how often it stopped after its first look.
 fn verdicts_until_decided(rays: u64, most: u64, rms: f64, series: u64) -> ([f64; 3], f64) {
     const LOOKS: u32 = 4;
-    let mut cube = Polygons::new(1);
-    for (k, face) in unit_cube().into_iter().enumerate() {
-        cube.add(face, Grid::Quad { na: 1, nb: 1 }, &[0.8], &[f64::from(u8::from(k == 0))]);
-    }
-    let stage = cube.stage();
+    let stage = cube();
     let session = Session::open(&stage, KernelKind::Builtin).expect("built in");
     let (solution, bands) = (candidate(rms), ["b0".to_string()]);
-    let judged = Judged {
-        areas: &[1.0; 6],
-        emission: &[1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        surfaces: &["face"; 6],
-        bands: &bands,
-        weights: &[1.0],
-    };
+    let judged = judged(&bands);
     let limits = Limits::rms(LIMIT);
     let (mut counts, mut at_once) = ([0u64; 3], 0);
     for s in 0..series {
