@@ -128,7 +128,7 @@ fn verdicts_until_decided(rays: u64, most: u64, rms: f64, series: u64) -> ([f64;
 }
 
 /// Looking again until something comes out keeps the rates: 2.5 % for each side over all looks; 1,000 series allow 3 sigma
-/// more, 3.98 %.
+/// more, 3.98 %. Turned red on purpose: with every look at 50 %, 41.6 % fail and 16.8 % pass.
 #[test]
 fn looking_until_decided_keeps_the_rates() {
     let series = 1000;
