@@ -1,0 +1,2 @@
+export { BufferAttribute, BufferGeometry, Camera, Color, DataTexture, FloatType, GLSL3, LineBasicMaterial, LineSegments, Mesh, NearestFilter, OrthographicCamera, PerspectiveCamera, RedFormat, RGBAFormat, RawShaderMaterial, Scene, ShaderMaterial, UnsignedByteType, Vector2, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget, DoubleSide, FrontSide, Box3, Sphere, Matrix4, Quaternion, MathUtils, SRGBColorSpace, LinearSRGBColorSpace, NoToneMapping, RGFormat, RGIntegerFormat } from "three";
+export { OrbitControls } from "three/addons/controls/OrbitControls.js";
