@@ -2,6 +2,8 @@
 //!
 //! OKLab is Ottosson's perceptual colour space (2020); its two published matrices are all that is used of it.
 
+use crate::view::Response;
+
 /// Red, green, blue of BT.709, linear light, 0 to 1.
 pub type LinearRgb = [f64; 3];
 
@@ -70,10 +72,13 @@ fn oklab_to_linear([l, a, b]: [f64; 3]) -> LinearRgb {
 
 /// Eight-bit sRGB code (IEC 61966-2-1) of a linear value; what lies outside 0 to 1 is clamped.
 pub fn to_srgb8(linear: f64) -> u8 {
-    let x = linear.clamp(0.0, 1.0);
-    let encoded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+    to_byte(Response::Srgb, linear)
+}
+
+/// The byte that drives a display of this response to a linear intensity (clamped to 0 to 1).
+pub fn to_byte(response: Response, linear: f64) -> u8 {
     // A float-to-integer cast saturates and takes NaN to 0.
-    (255.0 * encoded).round() as u8
+    (255.0 * response.value_of(linear).min(1.0)).round() as u8
 }
 
 #[cfg(test)]

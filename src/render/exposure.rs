@@ -44,6 +44,14 @@ impl DisplayColour {
             Self::Grey
         }
     }
+
+    /// Linear BT.709 of one set of bands, in their unit; grey is their luminance.
+    pub(super) fn rgb(self, weights: &[f64], bands: &[f64]) -> LinearRgb {
+        match (self, bands) {
+            (Self::Matrix(m), &[r, g, b]) => m.map(|row| row[0] * r + row[1] * g + row[2] * b),
+            _ => [weights.iter().zip(bands).map(|(w, v)| w * v).sum(); 3],
+        }
+    }
 }
 
 const XYZ_TO_BT709: [[f64; 3]; 3] = [
@@ -94,11 +102,7 @@ impl Exposure {
 
     /// The same before clamping: colours that are mixed or interpolated are clamped afterwards.
     pub fn linear(&self, radiosity: &[f64]) -> LinearRgb {
-        let rgb = match (self.colour, radiosity) {
-            (DisplayColour::Matrix(m), &[r, g, b]) => m.map(|row| row[0] * r + row[1] * g + row[2] * b),
-            _ => [self.weights.iter().zip(radiosity).map(|(w, v)| w * v).sum(); 3],
-        };
-        rgb.map(|c| c * self.scale)
+        self.colour.rgb(&self.weights, radiosity).map(|c| c * self.scale)
     }
 }
 

@@ -1,10 +1,12 @@
 //! Rasters: colours of patches through a visibility pass.
 
-use super::{LinearRgb, Mesh, Visibility, to_srgb8};
+use super::{LinearRgb, Mesh, Visibility, to_byte};
 use crate::raycast::{BACK, ESCAPED};
+use crate::view::Response;
 use rayon::prelude::*;
 
-/// An eight-bit picture, rows from the top, four bytes a pixel: sRGB and straight alpha.
+/// An eight-bit picture, rows from the top, four bytes a pixel: colours as the screen is driven with them (sRGB unless
+/// said otherwise) and straight alpha.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Raster {
     /// Width, pixels.
@@ -23,20 +25,20 @@ const BLANK_GREYS: [f64; 2] = [0.42, 0.30];
 /// Paints each patch in its colour (linear, by patch number); `None` is hatched. Backs are hatched dark, the
 /// background is left transparent, and the samples of a pixel are mixed in linear light.
 pub fn paint(visibility: &Visibility, palette: &[Option<LinearRgb>]) -> Raster {
-    paint_samples(visibility, |_, _, patch| palette.get(patch).copied().flatten())
+    paint_samples(visibility, Response::Srgb, |_, _, patch| palette.get(patch).copied().flatten())
 }
 
-/// The same with one colour per cell of a mesh: its patches or its elements.
-pub fn paint_cells(visibility: &Visibility, mesh: &Mesh, palette: &[Option<LinearRgb>]) -> Raster {
-    paint_samples(visibility, |pixel, k, patch| {
+/// The same with one colour per cell of a mesh, its patches or its elements, for a screen of this response.
+pub fn paint_cells(visibility: &Visibility, mesh: &Mesh, palette: &[Option<LinearRgb>], response: Response) -> Raster {
+    paint_samples(visibility, response, |pixel, k, patch| {
         let point = visibility.point(mesh.stage(), pixel, k)?;
         palette.get(mesh.cell_at(patch, point)).copied().flatten()
     })
 }
 
-/// Shades smoothly between `colours` at the vertices of a mesh (linear, not yet clamped).
-pub fn paint_smooth(visibility: &Visibility, mesh: &Mesh, colours: &[LinearRgb]) -> Raster {
-    paint_samples(visibility, |pixel, k, patch| {
+/// Shades smoothly between `colours` at the vertices of a mesh (linear, not yet clamped), for a screen of this response.
+pub fn paint_smooth(visibility: &Visibility, mesh: &Mesh, colours: &[LinearRgb], response: Response) -> Raster {
+    paint_samples(visibility, response, |pixel, k, patch| {
         let point = visibility.point(mesh.stage(), pixel, k)?;
         let cell = mesh.cell_at(patch, point);
         let mut sum = [0.0; 3];
@@ -52,7 +54,7 @@ pub fn paint_field(
     vertices: &[f64],
     colour: impl Fn(f64) -> LinearRgb + Sync,
 ) -> Raster {
-    paint_samples(visibility, |pixel, k, patch| {
+    paint_samples(visibility, Response::Srgb, |pixel, k, patch| {
         let point = visibility.point(mesh.stage(), pixel, k)?;
         let cell = mesh.cell_at(patch, point);
         (!mesh.vertices_of(cell).is_empty()).then(|| colour(mesh.value_at(cell, point, vertices)))
@@ -60,15 +62,20 @@ pub fn paint_field(
 }
 
 /// Paints with the colour of each sample, asked as (pixel, sample, patch).
-fn paint_samples(visibility: &Visibility, colour: impl Fn(usize, usize, usize) -> Option<LinearRgb> + Sync) -> Raster {
+fn paint_samples(
+    visibility: &Visibility,
+    response: Response,
+    colour: impl Fn(usize, usize, usize) -> Option<LinearRgb> + Sync,
+) -> Raster {
     let [width, height] = visibility.size();
-    let pixel = |p: usize| mix(visibility, &colour, p, width as usize);
+    let pixel = |p: usize| mix(visibility, response, &colour, p, width as usize);
     let rgba = (0..visibility.pixel_count()).into_par_iter().flat_map_iter(pixel).collect();
     Raster { width, height, rgba }
 }
 
 fn mix(
     visibility: &Visibility,
+    response: Response,
     colour: &impl Fn(usize, usize, usize) -> Option<LinearRgb>,
     pixel: usize,
     width: usize,
@@ -87,7 +94,7 @@ fn mix(
     if covered == 0 {
         return [0; 4];
     }
-    let [r, g, b] = sum.map(|s| to_srgb8(s / f64::from(covered)));
+    let [r, g, b] = sum.map(|s| to_byte(response, s / f64::from(covered)));
     [r, g, b, (255.0 * f64::from(covered) / samples.len() as f64).round() as u8]
 }
 
@@ -102,7 +109,7 @@ fn hatch(back: bool, x: usize, y: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::render::testing::{plate, room, tracer};
-    use crate::render::{SUPERSAMPLING, fit_camera};
+    use crate::render::{SUPERSAMPLING, fit_camera, to_srgb8};
 
     #[test]
     fn background_is_clear_edges_are_soft_and_insides_are_exact() {

@@ -1,6 +1,6 @@
 //! Values within cells from values at their corners: bilinear in quadrilaterals, linear in triangles.
 
-use super::{Exposure, LinearRgb, Mesh, Stencils};
+use super::{LinearRgb, Mesh, Shade, Stencils};
 use crate::math::{Bilinear, DVec3, centroid};
 use crate::solution::Radiosity;
 
@@ -38,11 +38,11 @@ impl Mesh<'_> {
 
 /// Colours at the vertices, linear and not yet clamped, of one set of radiosities per cell: what
 /// [`paint_smooth`](super::paint_smooth) takes.
-pub fn vertex_colours(stencils: &Stencils, exposure: &Exposure, cells: &Radiosity) -> Vec<LinearRgb> {
+pub fn vertex_colours(stencils: &Stencils, shade: &dyn Shade, cells: &Radiosity) -> Vec<LinearRgb> {
     let band = |c: usize| cells.values.iter().skip(c).step_by(cells.bands).copied().collect::<Vec<f64>>();
     let bands: Vec<Vec<f64>> = (0..cells.bands).map(|c| stencils.values(&band(c))).collect();
     let count = bands.first().map_or(0, Vec::len);
-    (0..count).map(|v| exposure.linear(&bands.iter().map(|b| b[v]).collect::<Vec<_>>())).collect()
+    (0..count).map(|v| shade.linear(&bands.iter().map(|b| b[v]).collect::<Vec<_>>())).collect()
 }
 
 /// Barycentric weights, clamped.

@@ -10,6 +10,7 @@ use crate::render::{
 };
 use crate::solution::Radiosity;
 use crate::study::Record;
+use crate::view::Response;
 
 /// Colours along a drawn bar.
 const BAR_STOPS: usize = 25;
@@ -116,7 +117,7 @@ fn print(plate: &Plate, visibility: &Visibility, mesh: &Mesh) -> Figure {
         caption: plate.caption.clone(),
         raster: match &plate.fill {
             Fill::Flat(palette) => paint(visibility, palette),
-            Fill::Smooth(colours) => paint_smooth(visibility, mesh, colours),
+            Fill::Smooth(colours) => paint_smooth(visibility, mesh, colours, Response::Srgb),
         },
         bar: plate.bar.clone(),
     }

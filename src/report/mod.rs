@@ -22,6 +22,7 @@ mod split;
 mod testing;
 mod text;
 mod thumbnail;
+mod tone;
 
 pub use artifact::{Artifact, Exporter, Extras, Phase, ReportError, save};
 pub use changes::change_lines;
@@ -34,3 +35,4 @@ pub use layers::exr_layers;
 pub use lines::{MetricLine, WorstLine, metric_lines, worst_lines};
 pub use markdown::Markdown;
 pub use text::{Text, one_line, text_summary};
+pub use tone::{tone_json, tone_words};

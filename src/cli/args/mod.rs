@@ -15,6 +15,7 @@ mod scene;
 mod setup;
 mod solve;
 mod suites;
+mod viewing;
 
 pub use audit::{AuditArgs, AuditCommand, AuditForm};
 pub use baseline::{BaselineChangeArgs, BaselineCommand, BaselineSaveArgs, BisectArgs};
@@ -34,6 +35,7 @@ pub use scene::{SceneArgs, SceneCommand};
 pub use setup::SetupCommand;
 pub use solve::SolveArgs;
 pub use suites::{ReceiversArgs, ValidateCommand};
+pub use viewing::{Positive, SurroundChoice, ToneChoice, ViewingArgs};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;

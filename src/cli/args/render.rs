@@ -1,5 +1,6 @@
 //! `etalon render`.
 
+use super::viewing::{Positive, ToneChoice, ViewingArgs};
 use crate::cli::values::{PerLevel, Pixels, Quantity, StateChoice};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -24,10 +25,19 @@ pub struct RenderArgs {
     /// One quantity in false colours with a bar: luminance, std-err, relative-std-err or band:NAME.
     #[arg(long, value_name = "Q")]
     pub quantity: Option<Quantity>,
-    /// Brighter (1 shows everything twice as bright) or darker (-1) than the fitted exposure.
+    /// How natural colours are made: tr93 (as the eye would see it; default), tr93-consistent, film, television, brightest,
+    /// or linear.
+    #[arg(long, value_name = "OPERATOR")]
+    pub tone: Option<ToneChoice>,
+    #[command(flatten)]
+    pub viewing: ViewingArgs,
+    /// All light times whatever gives the brightest lamp this luminance, cd/m^2: light is linear, eyes are not.
+    #[arg(long, value_name = "CD/M2", allow_hyphen_values = true)]
+    pub lamp: Option<Positive>,
+    /// Brighter (1 shows everything twice as bright) or darker (-1) than the fitted linear exposure.
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     pub exposure: Option<f64>,
-    /// Luminance shown white, W/m^2, instead of the fitted one: the same for pictures of several runs.
+    /// Luminance shown white, W/m^2, instead of the fitted one, on a linear scale: the same for pictures of several runs.
     #[arg(long, value_name = "W/m^2", conflicts_with = "exposure", allow_hyphen_values = true)]
     pub white: Option<f64>,
     /// Samples along each edge of a pixel.

@@ -1,18 +1,21 @@
 //! `etalon render`: pictures of a solution or a reference.
 
 mod layers;
+mod natural;
 mod picture;
 mod subject;
 mod target;
 
 use super::inputs;
-use crate::cli::args::{OnOff, RenderArgs, RenderStyle};
+use crate::cli::args::{OnOff, RenderArgs, RenderStyle, ToneChoice};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
 use crate::io::image::png;
 use crate::raycast::KernelKind;
 use crate::render::{View, Visibility};
+use crate::view::Operator;
+use natural::Shown;
 use picture::Painter;
 use serde_json::{Value, json};
 use subject::Subject;
@@ -24,6 +27,7 @@ const MOST_SAMPLES: u64 = 1 << 27;
 /// The options of a picture, checked against each other.
 struct Look<'a> {
     style: RenderStyle,
+    tone: ToneChoice,
     caption: bool,
     args: &'a RenderArgs,
 }
@@ -40,30 +44,40 @@ pub fn run(args: &RenderArgs, kernel: KernelKind, console: &Console) -> Result<u
     }
     let stems = target::stems(&cameras);
     // All pictures are made before the first is written.
-    let (mut files, mut shown) = (Vec::new(), Vec::new());
+    let (mut files, mut shown, mut words) = (Vec::new(), Vec::new(), Vec::new());
     for ((camera, fitted), stem) in cameras.iter().zip(stems) {
         let visibility = Visibility::cast(&session.tracer(), camera, look.samples());
         let view = View { visibility, fitted: *fitted };
         let path = target.path(&stem);
-        let (bytes, size) = encode(&view, &painter, &subject, &target)?;
+        let looked = painter.look(&view.visibility);
+        let (bytes, size) = encode(&view, &painter, looked.as_ref(), &subject, &target)?;
         shown.push(json!({
             "camera": camera.name, "fitted": fitted, "file": path, "width": size[0], "height": size[1],
+            "tone": looked.as_ref().map(Shown::json),
         }));
+        words.extend(looked.map(|l| l.words()).filter(|w| !words.contains(w)));
         files.push((path, bytes));
     }
     target.write(&files)?;
     let json = summary(&subject, &look, &painter, shown);
-    console.result(&text(&json, &painter), &json);
+    words.extend(Some(painter.words(None)).filter(|w| !w.is_empty()));
+    console.result(&text(&json, &words), &json);
     Ok(exit::DONE)
 }
 
-fn encode(view: &View, painter: &Painter, subject: &Subject, target: &Target) -> Result<(Vec<u8>, [u32; 2]), Failure> {
+fn encode(
+    view: &View,
+    painter: &Painter,
+    shown: Option<&Shown>,
+    subject: &Subject,
+    target: &Target,
+) -> Result<(Vec<u8>, [u32; 2]), Failure> {
     let bug = |e: crate::io::image::ImageError| Failure::input(e.to_string());
     if let Target::Exr(_) = target {
         let bytes = layers::exr_picture(subject, painter, &view.visibility).map_err(bug)?;
         return Ok((bytes, view.visibility.size()));
     }
-    let raster = painter.paint(&view.visibility);
+    let raster = painter.paint(&view.visibility, shown);
     let bytes = png(raster.width, raster.height, &raster.rgba).map_err(bug)?;
     Ok((bytes, [raster.width, raster.height]))
 }
@@ -88,8 +102,20 @@ impl<'a> Look<'a> {
         if !refused.is_empty() {
             return Err(Failure::input(refused));
         }
+        let linear = args.exposure.is_some() || args.white.is_some();
+        let tone = match args.tone {
+            Some(ToneChoice::Operator(o)) if linear => {
+                return Err(Failure::input(format!(
+                    "--tone {} sets its own exposure; leave --exposure and --white out, or use --tone linear",
+                    o.name()
+                )));
+            }
+            Some(tone) => tone,
+            None if linear => ToneChoice::Linear,
+            None => ToneChoice::Operator(Operator::Tr93),
+        };
         let wordy = style == RenderStyle::Both || args.quantity.is_some();
-        Ok(Self { style, caption: args.caption.map_or(wordy, |c| c == OnOff::On), args })
+        Ok(Self { style, tone, caption: args.caption.map_or(wordy, |c| c == OnOff::On), args })
     }
 
     /// The item buffer is exact: one sample in the middle of each pixel.
@@ -119,21 +145,20 @@ fn summary(subject: &Subject, look: &Look, painter: &Painter, pictures: Vec<Valu
         RenderStyle::Both => "both",
         RenderStyle::Items => "items",
     };
-    let exposure = painter.exposure().map(|e| json!({ "white_luminance": e.white_luminance, "scale": e.scale }));
     let range = painter.scale().map(|s| json!({ "low": s.low(), "high": s.high, "beyond": s.beyond }));
     json!({
         "scene": subject.stage.name, "scene_hash": subject.stage.hash(), "shown": subject.name, "style": style,
         "quantity": look.args.quantity.as_ref().map(ToString::to_string),
         "per": if look.args.per == PerLevel::Element { "element" } else { "patch" },
-        "samples_per_pixel": look.samples() * look.samples(), "exposure": exposure, "range": range,
+        "samples_per_pixel": look.samples() * look.samples(), "range": range,
         "pictures": pictures,
     })
 }
 
-fn text(json: &Value, painter: &Painter) -> String {
+fn text(json: &Value, words: &[String]) -> String {
     let word = |v: &Value| v.as_str().unwrap_or_default().to_string();
     let lines = json["pictures"].as_array().into_iter().flatten().map(|p| {
         format!("{}: {} x {} pixels, written to {}", word(&p["camera"]), p["width"], p["height"], word(&p["file"]))
     });
-    lines.chain([painter.words()]).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("\n")
+    lines.chain(words.iter().cloned()).collect::<Vec<_>>().join("\n")
 }

@@ -6,6 +6,7 @@ use crate::report::ReportError;
 use crate::report::format::count;
 use crate::scene::Stage;
 use crate::solution::{Radiosity, Series, Snapshot};
+use crate::view::Response;
 use base64::Engine;
 
 /// Pictures of one state through one camera.
@@ -95,8 +96,12 @@ fn painted(
     stem: &str,
 ) -> Result<Picture, ReportError> {
     let mesh = Mesh::of_patches(shown.stage);
-    let raster =
-        paint_smooth(&shown.view.visibility, &mesh, &vertex_colours(&Stencils::of(&mesh), exposure, radiosity));
+    let raster = paint_smooth(
+        &shown.view.visibility,
+        &mesh,
+        &vertex_colours(&Stencils::of(&mesh), exposure, radiosity),
+        Response::Srgb,
+    );
     let file = format!("picture-edit-{}-{stem}.png", shown.stage.state);
     Ok(Picture { caption, file, png: png(raster.width, raster.height, &raster.rgba)? })
 }

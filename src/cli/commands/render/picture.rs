@@ -1,15 +1,17 @@
 //! Painting: natural colours, quantities, patches; plain, or on a sheet with words.
 
 use super::Look;
+use super::natural::{Natural, Shown};
 use super::subject::Subject;
 use crate::cli::args::RenderStyle;
 use crate::cli::exit::Failure;
 use crate::cli::values::Quantity;
 use crate::render::{
-    Bar, Exposure, Field, LinearRgb, Mesh, Raster, Scale, Sheet, Stencils, Visibility, luminance, luminance_std_err,
-    paint_cells, paint_field, paint_items, paint_smooth, side_by_side, vertex_colours,
+    Bar, Field, LinearRgb, Mesh, Raster, Scale, Sheet, Stencils, Visibility, luminance, luminance_std_err, paint_cells,
+    paint_field, paint_items, paint_smooth, side_by_side, vertex_colours,
 };
 use crate::solution::Radiosity;
+use crate::view::Response;
 
 /// Everything about a picture that no camera changes.
 pub(super) struct Painter<'a> {
@@ -17,18 +19,18 @@ pub(super) struct Painter<'a> {
     stencils: Stencils,
     style: RenderStyle,
     caption: bool,
-    exposure: Option<Exposure>,
-    quantity: Option<Shown>,
-    /// Colours of cells; empty for the item buffer.
+    natural: Option<Natural<'a>>,
+    /// What is shown in natural colours.
+    radiosity: Option<&'a Radiosity>,
+    quantity: Option<False>,
+    /// False colours of cells.
     constant: Vec<Option<LinearRgb>>,
-    /// Colours of vertices, before clamping; empty unless asked for.
-    smooth: Vec<LinearRgb>,
-    /// Values of a quantity at the vertices; likewise.
+    /// Values of a quantity at the vertices; empty unless asked for.
     field: Vec<f64>,
 }
 
 /// A quantity in false colours.
-struct Shown {
+struct False {
     scale: Scale,
     /// Name and unit.
     title: String,
@@ -36,17 +38,20 @@ struct Shown {
 }
 
 impl<'a> Painter<'a> {
-    pub(super) fn new(subject: &'a Subject, look: &Look) -> Result<Self, Failure> {
+    pub(super) fn new(subject: &'a Subject, look: &Look<'a>) -> Result<Self, Failure> {
         let stage = &subject.stage;
         let mesh = if subject.per_element { Mesh::of_elements(stage) } else { Mesh::of_patches(stage) };
         let stencils = Stencils::of(&mesh);
         let (style, caption) = (look.style, look.caption);
-        let (constant, smooth, field) = (Vec::new(), Vec::new(), Vec::new());
+        let (constant, field) = (Vec::new(), Vec::new());
         let mut painter =
-            Self { mesh, stencils, style, caption, exposure: None, quantity: None, constant, smooth, field };
+            Self { mesh, stencils, style, caption, natural: None, radiosity: None, quantity: None, constant, field };
         match (&subject.radiosity, &look.args.quantity) {
             (Some(b), Some(quantity)) => painter.show_quantity(subject, b, quantity)?,
-            (Some(b), None) if style != RenderStyle::Items => painter.show_natural(subject, b, look),
+            (Some(b), None) if style != RenderStyle::Items => {
+                painter.natural = Some(Natural::new(subject, b, look));
+                painter.radiosity = Some(b);
+            }
             _ => {}
         }
         Ok(painter)
@@ -57,9 +62,9 @@ impl<'a> Painter<'a> {
         self.style == style
     }
 
-    /// The exposure, where colours are natural.
-    pub(super) fn exposure(&self) -> Option<&Exposure> {
-        self.exposure.as_ref()
+    /// The natural colours of a picture, where they are natural.
+    pub(super) fn look(&self, visibility: &Visibility) -> Option<Shown> {
+        self.natural.as_ref().map(|n| n.through(visibility, &self.mesh))
     }
 
     /// The colour scale, where colours are false.
@@ -81,15 +86,6 @@ impl<'a> Painter<'a> {
         matches!(self.style, RenderStyle::Smooth | RenderStyle::Both)
     }
 
-    fn show_natural(&mut self, subject: &Subject, b: &Radiosity, look: &Look) {
-        let exposure = exposure(subject, b, look);
-        self.constant = (0..b.len()).map(|i| Some(exposure.display(b.of(i)))).collect();
-        if self.wants_smooth() {
-            self.smooth = vertex_colours(&self.stencils, &exposure, b);
-        }
-        self.exposure = Some(exposure);
-    }
-
     fn show_quantity(&mut self, subject: &Subject, b: &Radiosity, quantity: &Quantity) -> Result<(), Failure> {
         let is_error = matches!(quantity, Quantity::StdErr | Quantity::RelativeStdErr);
         if is_error && self.wants_smooth() {
@@ -104,18 +100,14 @@ impl<'a> Painter<'a> {
             let cells: Vec<f64> = field.values.iter().map(|v| v.unwrap_or(0.0)).collect();
             self.field = self.at_vertices(&cells);
         }
-        self.quantity = Some(Shown { scale, title, factor });
+        self.quantity = Some(False { scale, title, factor });
         Ok(())
     }
 
-    /// The picture through one camera.
-    pub(super) fn paint(&self, visibility: &Visibility) -> Raster {
-        let constant = || paint_cells(visibility, &self.mesh, &self.constant);
-        let smooth = || match self.scale() {
-            // Values are interpolated, not colours: the bar stays true.
-            Some(scale) => paint_field(visibility, &self.mesh, &self.field, |v| scale.colour(v)),
-            None => paint_smooth(visibility, &self.mesh, &self.smooth),
-        };
+    /// The picture through one camera, in the natural colours that belong to it.
+    pub(super) fn paint(&self, visibility: &Visibility, shown: Option<&Shown>) -> Raster {
+        let constant = || self.flat(visibility, shown);
+        let smooth = || self.shaded(visibility, shown);
         let panels = match self.style {
             RenderStyle::Smooth => vec![("Interpolated between vertices", smooth())],
             RenderStyle::Constant => vec![("As solved: constant per patch", constant())],
@@ -129,16 +121,37 @@ impl<'a> Painter<'a> {
         }
         let panels = panels.into_iter().map(|(title, raster)| (title.to_string(), raster)).collect();
         let bar = self.quantity.as_ref().map(|q| Bar::of(&q.scale, &q.title, q.factor));
-        Sheet { panels, bar, caption: self.words() }.compose()
+        Sheet { panels, bar, caption: self.words(shown) }.compose()
+    }
+
+    /// One colour a cell.
+    fn flat(&self, visibility: &Visibility, shown: Option<&Shown>) -> Raster {
+        let (Some(shown), Some(b)) = (shown, self.radiosity) else {
+            return paint_cells(visibility, &self.mesh, &self.constant, Response::Srgb);
+        };
+        let shade = shown.shade();
+        let palette: Vec<Option<LinearRgb>> = (0..b.len()).map(|i| Some(shade.display(b.of(i)))).collect();
+        paint_cells(visibility, &self.mesh, &palette, shade.response())
+    }
+
+    /// Interpolated between vertices.
+    fn shaded(&self, visibility: &Visibility, shown: Option<&Shown>) -> Raster {
+        match (self.scale(), shown, self.radiosity) {
+            // Values are interpolated, not colours: the bar stays true.
+            (Some(scale), _, _) => paint_field(visibility, &self.mesh, &self.field, |v| scale.colour(v)),
+            (None, Some(shown), Some(b)) => {
+                let colours = vertex_colours(&self.stencils, shown.shade(), b);
+                paint_smooth(visibility, &self.mesh, &colours, shown.shade().response())
+            }
+            // The item buffer.
+            _ => paint_items(visibility),
+        }
     }
 
     /// What the colours mean.
-    pub(super) fn words(&self) -> String {
-        if let Some(e) = &self.exposure {
-            return format!(
-                "Linear exposure, sRGB: a luminance of {} W/m^2 is shown white.",
-                figures(e.white_luminance)
-            );
+    pub(super) fn words(&self, shown: Option<&Shown>) -> String {
+        if let Some(shown) = shown {
+            return shown.words();
         }
         match self.scale() {
             Some(s) if s.beyond > 0.0 => {
@@ -146,19 +159,6 @@ impl<'a> Painter<'a> {
             }
             _ => String::new(),
         }
-    }
-}
-
-/// The scale of the reference where there is one, else of what is shown; then what the user says.
-fn exposure(subject: &Subject, b: &Radiosity, look: &Look) -> Exposure {
-    let (photometry, receivers) = (&subject.receivers.photometry, &subject.receivers);
-    let is_emitter: Vec<bool> = receivers.emission.chunks(b.bands).map(|e| e.iter().any(|e| *e > 0.0)).collect();
-    let luminances = luminance(photometry, subject.yardstick.as_ref().unwrap_or(b));
-    let fitted = Exposure::fit(photometry, &luminances, &receivers.areas, &is_emitter);
-    match (look.args.white, look.args.exposure) {
-        (Some(white), _) => fitted.with_white(white),
-        (None, Some(stops)) => fitted.brighter(stops),
-        (None, None) => fitted,
     }
 }
 
@@ -201,7 +201,7 @@ pub(super) fn band(b: &Radiosity, c: usize) -> Vec<f64> {
 }
 
 /// Three significant figures.
-fn figures(x: f64) -> String {
+pub(super) fn figures(x: f64) -> String {
     let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
     let plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs());
     if plain { rounded.to_string() } else { format!("{rounded:e}") }

@@ -9,6 +9,7 @@ use crate::io::{SolutionFormat, StoredReference, is_reference, read_solution};
 use crate::scene::Stage;
 use crate::solution::Radiosity;
 use crate::study::Receivers;
+use crate::view::Viewer;
 use std::path::Path;
 
 /// A scene with what is shown of it.
@@ -50,7 +51,28 @@ impl Subject {
         }
         let name = args.solution.as_ref().map_or_else(|| args.scene.clone(), |p| p.display().to_string());
         let (radiosity, yardstick) = if given.is_some() { (given, own) } else { (own, None) };
-        Ok(Self { stage, receivers, per_element, radiosity, yardstick, name })
+        let mut subject = Self { stage, receivers, per_element, radiosity, yardstick, name };
+        if let Some(lamp) = args.lamp {
+            subject.light(lamp.0, args.viewing.efficacy.0)?;
+        }
+        Ok(subject)
+    }
+
+    /// All light times the factor that gives the brightest lamp this luminance, cd/m^2.
+    fn light(&mut self, luminance: f64, efficacy: f64) -> Result<(), Failure> {
+        let bands = self.receivers.photometry.bands.len();
+        let brightest = (0..self.receivers.areas.len())
+            .filter(|i| self.receivers.areas[*i] > 0.0)
+            .map(|i| self.receivers.photometry.luminance(&self.receivers.emission[i * bands..(i + 1) * bands]))
+            .fold(0.0, f64::max);
+        if brightest <= 0.0 {
+            return Err(Failure::input("--lamp: nothing in this scene emits light; leave it out"));
+        }
+        let factor = luminance / Viewer::luminance_of(efficacy, brightest);
+        for b in self.radiosity.iter_mut().chain(&mut self.yardstick) {
+            b.values.iter_mut().chain(b.std_err.iter_mut().flatten()).for_each(|x| *x *= factor);
+        }
+        Ok(())
     }
 }
 
