@@ -242,7 +242,7 @@ mod tests {
         assert!(bright.bias.low < 0.01 && bright.bias.high > 0.01 && (bright.bias.value - 0.01).abs() < 2e-4);
         assert_eq!(bright.per_band.len(), 3);
         let solution = Radiosity { bands: 3, values: truth.iter().map(|b| b * 1.01).collect(), std_err: None };
-        let beside = Beside { before: None, baseline: None, objects: &vec!["o"; n] };
+        let beside = Beside { before: None, baseline: None, objects: &vec!["o"; n], viewing: None };
         let limit = |max: f64| {
             let m = measure(&solution, &reference, &judged, beside, &Limits::rms(max), 0.95, false).unwrap();
             assert_eq!(m[0].estimate, Some(bright.rms));

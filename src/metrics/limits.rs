@@ -16,6 +16,8 @@ pub enum Metric {
     Worst,
     /// |signed error| of the light as a whole.
     Energy,
+    /// Share of the picture that is off by more than one step of the display.
+    Visible,
     /// Eq. 7 of the solution less eq. 7 of a baseline: by how much it became worse.
     Worse,
 }
@@ -28,6 +30,7 @@ impl Metric {
             Self::Top1 => "top1",
             Self::Worst => "worst",
             Self::Energy => "energy",
+            Self::Visible => "visible",
             Self::Worse => "worse",
         }
     }
@@ -117,6 +120,9 @@ impl FromStr for Limit {
             "worst" => Metric::Worst,
             "energy" => Metric::Energy,
             "top1" => return Err("a limit on the top 1 % is --max-top1: it goes for the whole scene".into()),
+            "visible" => {
+                return Err("a limit on what can be seen is --max-visible: it goes for the whole picture".into());
+            }
             _ => return Err(wrong()),
         };
         let place = match place.map(|p| p.split_once(':').ok_or_else(wrong)).transpose()? {

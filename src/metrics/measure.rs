@@ -9,6 +9,7 @@ use super::quantity::Quantity;
 use super::rms::relative_rms;
 use super::top1::top1_rms;
 use super::types::{Comparison, Judged, Truth};
+use super::visible::{AsSeen, Viewing, as_seen, visible_share};
 use super::worst::worst_patch;
 use crate::solution::Radiosity;
 use crate::stats::Estimate;
@@ -23,6 +24,8 @@ pub struct Measured {
     /// The smallest value of the metric that this run would have failed for sure in 19 of 20 cases; `None` where that
     /// is not known.
     pub smallest_caught: Option<f64>,
+    /// Times the rays that would decide an open limit, where that does not follow from the interval alone.
+    pub rays_factor: Option<f64>,
 }
 
 /// What a solution is measured with, beside the judged receivers.
@@ -34,6 +37,8 @@ pub struct Beside<'a> {
     pub baseline: Option<&'a Radiosity>,
     /// Object of each receiver.
     pub objects: &'a [&'a str],
+    /// Who looks, for what can be seen.
+    pub viewing: Option<&'a Viewing>,
 }
 
 /// Measures a solution for each limit, all intervals two-sided at `confidence`.
@@ -67,9 +72,31 @@ impl Comparison {
             (Metric::Top1, Place::Everywhere) => self.top1,
             _ => None,
         };
-        let of = |l: &Limit| Measured { limit: l.clone(), estimate: estimate(l), smallest_caught: None };
+        let of =
+            |l: &Limit| Measured { limit: l.clone(), estimate: estimate(l), smallest_caught: None, rays_factor: None };
         limits.list().iter().map(of).collect()
     }
+}
+
+/// What can be seen of the error of a solution; `None` where nothing of it is in the picture.
+///
+/// # Errors
+/// As [`compare`](super::compare).
+pub fn look(
+    solution: &Radiosity,
+    reference: &Truth,
+    judged: &Judged,
+    viewing: &Viewing,
+    confidence: f64,
+) -> Result<Option<AsSeen>, MetricsError> {
+    super::check::inputs(solution, reference, None, judged, confidence)?;
+    let (got, expected) = (viewing.shares.len(), judged.areas.len());
+    if got != expected {
+        return Err(MetricsError::Shape { what: "the picture", unit: "patches", got, expected });
+    }
+    let quantity = Quantity::luminance(judged, false);
+    let (ours, rows) = (quantity.of(&solution.values), quantity.of_truth(reference));
+    Ok(as_seen(viewing, judged.areas, &ours, &rows, confidence))
 }
 
 struct Gauge<'a> {
@@ -83,6 +110,9 @@ struct Gauge<'a> {
 
 impl Gauge<'_> {
     fn measured(&self, limit: &Limit) -> Result<Measured, MetricsError> {
+        if limit.metric == Metric::Visible {
+            return Ok(self.visible(limit));
+        }
         let (areas, quantity) = (self.areas(&limit.place)?, self.quantity(&limit.place)?);
         let (ours, rows) = (quantity.of(&self.solution.values), quantity.of_truth(self.reference));
         let metric = |y: &[f64]| match limit.metric {
@@ -90,6 +120,7 @@ impl Gauge<'_> {
             Metric::Worst => worst_patch(&areas, y, &rows, self.confidence),
             Metric::Energy => relative_bias(&areas, y, &rows, self.confidence).map(size),
             Metric::Top1 => self.top1(&areas, y, &rows),
+            Metric::Visible => None,
             Metric::Worse => {
                 let before = quantity.of(&self.beside.baseline?.values);
                 growth(&areas, y, &before, &rows, self.confidence)
@@ -97,7 +128,18 @@ impl Gauge<'_> {
         };
         let estimate = metric(&ours);
         let caught = estimate.and_then(|_| smallest_caught(limit, &areas, &ours, &rows, &metric));
-        Ok(Measured { limit: limit.clone(), estimate, smallest_caught: caught })
+        Ok(Measured { limit: limit.clone(), estimate, smallest_caught: caught, rays_factor: None })
+    }
+
+    /// What is seen is all light, emission too, by an eye that was settled beforehand. What would have been caught is not
+    /// known: a share grows in jumps.
+    fn visible(&self, limit: &Limit) -> Measured {
+        let quantity = Quantity::luminance(self.judged, false);
+        let (ours, rows) = (quantity.of(&self.solution.values), quantity.of_truth(self.reference));
+        let seen = self.beside.viewing.and_then(|v| visible_share(v, self.judged.areas, &ours, &rows, self.confidence));
+        let rays_factor = seen.as_ref().and_then(|s| s.rays_factor(limit.max));
+        let estimate = seen.map(|s| s.estimate);
+        Measured { limit: limit.clone(), estimate, smallest_caught: None, rays_factor }
     }
 
     fn top1(&self, areas: &[f64], ours: &[f64], rows: &[Vec<f64>]) -> Option<Estimate> {
@@ -179,7 +221,8 @@ mod tests {
         let truth = two([[1.0, 3.0], [2.0, 2.0], [4.0, 4.0], [9.0, 9.0]]);
         let ours = two([[2.0, 3.0], [2.0, 2.0], [5.0, 4.0], [0.0, 0.0]]);
         let worse = two([[3.0, 3.0], [2.0, 2.0], [5.0, 4.0], [0.0, 0.0]]);
-        let beside = Beside { before: None, baseline: Some(&worse), objects: &["room", "room", "box", "box"] };
+        let beside =
+            Beside { before: None, baseline: Some(&worse), objects: &["room", "room", "box", "box"], viewing: None };
         let value = |text: &str| {
             let limits: Limits = [text.parse::<Limit>().unwrap()].into_iter().collect();
             let m = measure(&ours, &Truth::Given(truth.clone()), &judged(&bands), beside, &limits, 0.95, false);
@@ -205,7 +248,7 @@ mod tests {
     fn a_place_that_is_not_there_is_named_with_those_that_are() {
         let bands = ["r".to_string(), "g".to_string()];
         let b = two([[1.0; 2]; 4]);
-        let beside = Beside { before: None, baseline: None, objects: &["room"; 4] };
+        let beside = Beside { before: None, baseline: None, objects: &["room"; 4], viewing: None };
         let refused = |text: &str| {
             let limits: Limits = [text.parse::<Limit>().unwrap()].into_iter().collect();
             let m = measure(&b, &Truth::Given(b.clone()), &judged(&bands), beside, &limits, 0.95, false);

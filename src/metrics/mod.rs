@@ -30,6 +30,7 @@ mod sums;
 mod top1;
 mod types;
 mod verdict;
+mod visible;
 mod worst;
 
 pub use baseline::{Change, changes, growth, growth_of_squares};
@@ -45,7 +46,7 @@ pub use matrix::{
     EntryDifference, MATRIX_FALSE_ALARM, MatrixComparison, MatrixLimits, MatrixRequest, Rounding, RowDifference,
     compare_matrices, decide_matrix,
 };
-pub use measure::{Beside, Measured, measure};
+pub use measure::{Beside, Measured, look, measure};
 pub use noise::{Beyond, NoiseTest};
 pub use rates::{FLOOR_FACTOR, Point, Rate, Reached, fit_rate, reached};
 pub use residual::{BandBounds, Rebounded, ResidualMetrics, bound_error};
@@ -58,4 +59,5 @@ pub use split::{Part, Split, Steps, split};
 pub use top1::{top1_count, top1_rms, top1_set};
 pub use types::{Comparison, Decision, Judged, LimitOutcome, Truth, Verdict, WorstPatch};
 pub use verdict::{decide, shared_confidence};
+pub use visible::{AsSeen, Needed, Viewing, WorstSeen};
 pub use worst::worst_patch;

@@ -1,6 +1,6 @@
 //! Pass, fail or not known: the only place that decides.
 
-use super::limits::Limits;
+use super::limits::{Limits, Metric};
 use super::measure::Measured;
 use super::types::{Decision, LimitOutcome, Verdict};
 use crate::stats::{Estimate, bonferroni_level};
@@ -41,10 +41,14 @@ pub(super) fn overall(limits: &[LimitOutcome]) -> Verdict {
 
 /// One limit of a comparison.
 fn of_measured(measured: &Measured) -> LimitOutcome {
-    let Measured { limit, estimate, smallest_caught } = measured;
+    let Measured { limit, estimate, smallest_caught, rays_factor } = measured;
     let mut one = outcome(&limit.key(), limit.max, *estimate);
     if limit.unless_sure && estimate.is_some() && one.verdict == Verdict::Inconclusive {
         (one.verdict, one.rays_factor) = (Verdict::Pass, None);
+    }
+    if limit.metric == Metric::Visible && one.verdict == Verdict::Inconclusive {
+        // A share is settled patch by patch; its half-width does not shrink like noise.
+        one.rays_factor = rays_factor.map(|f| whole(MARGIN * f).max(2.0));
     }
     LimitOutcome { smallest_caught: *smallest_caught, ..one }
 }
@@ -81,14 +85,14 @@ fn whole(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::{Limit, Metric};
+    use crate::metrics::Limit;
 
     fn estimate(low: f64, value: f64, high: f64) -> Estimate {
         Estimate { value, std_err: Some(0.5 * (high - value)), low, high }
     }
 
     fn of(metric: Metric, max: f64, estimate: Option<Estimate>) -> Measured {
-        Measured { limit: Limit::new(metric, max), estimate, smallest_caught: None }
+        Measured { limit: Limit::new(metric, max), estimate, smallest_caught: None, rays_factor: None }
     }
 
     fn of_rms(e: Estimate, limit: f64) -> LimitOutcome {
@@ -128,7 +132,7 @@ mod tests {
     fn kept_unless_surely_exceeded() {
         let of = |e: Estimate| {
             let limit = Limit { unless_sure: true, ..Limit::new(Metric::Worse, 0.0) };
-            decide(&[Measured { limit, estimate: Some(e), smallest_caught: None }]).verdict
+            decide(&[Measured { limit, estimate: Some(e), smallest_caught: None, rays_factor: None }]).verdict
         };
         assert_eq!(of(estimate(-0.01, 0.001, 0.02)), Verdict::Pass);
         assert_eq!(of(estimate(0.001, 0.01, 0.02)), Verdict::Fail);

@@ -4,9 +4,12 @@ use super::ReportError;
 use super::artifact::check_shape;
 use super::asked::Level;
 use super::format::{count, round_number, significant};
+use super::tone::tone_words;
+use crate::metrics::AsSeen;
 use crate::render::{
-    Exposure, Field, LinearRgb, Mesh, Raster, Scale, Stencils, View, Visibility, difference, in_standard_errors,
-    luminance, luminance_std_err, paint, paint_smooth, relative_difference, to_srgb8, vertex_colours,
+    Exposure, Field, LinearRgb, Mesh, Raster, Scale, Seen, Shade, Stencils, ToneMap, View, Visibility, difference,
+    in_standard_errors, luminance, luminance_std_err, paint_cells, paint_smooth, relative_difference, to_srgb8,
+    vertex_colours,
 };
 use crate::solution::Radiosity;
 use crate::study::Record;
@@ -35,7 +38,7 @@ pub struct ViewFigures {
 /// One picture with its words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// `reference`, `candidate`, `difference`, `relative`, `std_err`, `z`, `reference-smooth` or `candidate-smooth`.
+    /// `reference`, `candidate`, `difference`, `relative`, `std_err`, `z`, `steps`, `brils`, `reference-smooth` or `candidate-smooth`.
     pub kind: &'static str,
     /// Title.
     pub title: &'static str,
@@ -78,6 +81,8 @@ struct Plate {
     caption: String,
     fill: Fill,
     bar: Option<ColourBar>,
+    /// Of the screen it is made for.
+    response: Response,
 }
 
 /// How the patches are filled.
@@ -98,7 +103,7 @@ pub fn figures(record: &Record, views: &[View]) -> Result<Vec<ViewFigures>, Repo
     }
     check_shape(record)?;
     let mesh = Mesh::of_patches(&record.stage);
-    let plates = plates(record, &mesh);
+    let plates = plates(record, views, &mesh);
     let stems = stems(views);
     let view = |(v, stem): (&View, String)| ViewFigures {
         camera: v.visibility.camera().name.clone(),
@@ -116,14 +121,14 @@ fn print(plate: &Plate, visibility: &Visibility, mesh: &Mesh) -> Figure {
         title: plate.title,
         caption: plate.caption.clone(),
         raster: match &plate.fill {
-            Fill::Flat(palette) => paint(visibility, palette),
-            Fill::Smooth(colours) => paint_smooth(visibility, mesh, colours, Response::Srgb),
+            Fill::Flat(palette) => paint_cells(visibility, mesh, palette, plate.response),
+            Fill::Smooth(colours) => paint_smooth(visibility, mesh, colours, plate.response),
         },
         bar: plate.bar.clone(),
     }
 }
 
-fn plates(record: &Record, mesh: &Mesh) -> Vec<Plate> {
+fn plates(record: &Record, views: &[View], mesh: &Mesh) -> Vec<Plate> {
     let (stage, photometry) = (&record.stage, &record.stage.photometry);
     let areas = stage.areas();
     let reference = luminance(photometry, &record.reference);
@@ -133,8 +138,8 @@ fn plates(record: &Record, mesh: &Mesh) -> Vec<Plate> {
     let noise = luminance_std_err(photometry, &record.reference);
     let z = tested(record)
         .unwrap_or_else(|| in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution)));
-    let exposure = exposure(record, &reference, &areas);
-    let mut all = natural(record, &exposure);
+    let look = Look::of(record, views, mesh, &reference, &areas);
+    let mut all = natural(record, &look);
     let scale = Scale::symmetric(&wrong, &areas, 0.0);
     all.push(false_colour("difference", "Signed difference", WRONG, &wrong, scale, WATTS));
     let scale = Scale::symmetric(&relative, &areas, 0.0);
@@ -146,7 +151,10 @@ fn plates(record: &Record, mesh: &Mesh) -> Vec<Plate> {
         let what = format!("{IN_ERRORS}{}", beyond(record));
         all.push(false_colour("z", "Difference in standard errors", &what, &z, scale, ERRORS));
     }
-    all.extend(smooth(record, &exposure, mesh));
+    if let Some(seen) = &record.as_seen {
+        all.extend(as_seen(seen, &reference, &solution, &areas));
+    }
+    all.extend(smooth(record, &look, mesh));
     all
 }
 
@@ -174,16 +182,62 @@ fn beyond(record: &Record) -> String {
 pub(super) type Unit = (&'static str, f64);
 pub(super) const WATTS: Unit = ("W/m\u{b2}, luminance", 1.0);
 const PERCENT: Unit = ("% of the reference", 100.0);
+const STEPS: Unit = ("steps of the display, of 255", 1.0);
+const BRILS: Unit = ("brils", 1.0);
 const ERRORS: Unit = ("standard errors", 1.0);
 
 const WRONG: &str = "Solution minus reference: red where the solution is too bright, blue where it is too dark.";
 const RELATIVE: &str = "The same as a share of what the reference has there: errors in dark corners show as clearly as \
                         those in the light.";
+const IN_STEPS: &str = "By how many steps of the frame buffer the screen shows it wrong: what stays within one cannot \
+                        be seen there.";
+const IN_BRILS: &str = "By how much brighter (red) or darker (blue) it looks to an eye in the scene.";
 const NOISE: &str = "How well the reference itself is known.";
 const SMOOTHED: &str = "Interpolated between vertices, as in Cohen and Greenberg (1985): how the solution would be shown. \
                         Nothing is judged by it.";
 const IN_ERRORS: &str =
     "Differences against the noise: what stays within two or three is no evidence of an error in the solution.";
+
+/// How all pictures in natural colours are made, with what is said of it.
+struct Look {
+    shade: Box<dyn Shade>,
+    words: String,
+}
+
+impl Look {
+    /// Through the eye that the record was looked at with, else on one linear scale.
+    fn of(record: &Record, views: &[View], mesh: &Mesh, luminances: &[f64], areas: &[f64]) -> Self {
+        let Some(seen) = &record.as_seen else {
+            let exposure = exposure(record, luminances, areas);
+            let words = format!(
+                "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % \
+                 of the reflecting area stays below); lamps may burn out.",
+                significant(exposure.white_luminance, 3)
+            );
+            return Self { shade: Box::new(exposure), words };
+        };
+        let map = ToneMap::new(seen.viewer.clone(), &record.stage.photometry);
+        let shares = Seen::of(mesh, views.iter().map(|v| &v.visibility)).shares;
+        let clipped = map.clipped(luminances.iter().copied().zip(shares));
+        Self { words: tone_words(&map.viewer, clipped), shade: Box::new(map) }
+    }
+}
+
+/// The difference as it is seen: in steps of the display and in brils.
+fn as_seen(seen: &AsSeen, reference: &[f64], solution: &[f64], areas: &[f64]) -> Vec<Plate> {
+    let viewer = &seen.viewer;
+    let off = |of: &dyn Fn(f64) -> f64| Field {
+        values: reference.iter().zip(solution).map(|(r, s)| Some(of(*s) - of(*r))).collect(),
+    };
+    let (steps, brils) = (off(&|y| viewer.steps(y)), off(&|y| viewer.brightness(y)));
+    let plate = |kind, title, what, field: &Field, least, unit| {
+        false_colour(kind, title, what, field, Scale::symmetric(field, areas, least), unit)
+    };
+    vec![
+        plate("steps", "Difference in display steps", IN_STEPS, &steps, 1.0, STEPS),
+        plate("brils", "Difference in brightness", IN_BRILS, &brils, 0.0, BRILS),
+    ]
+}
 
 /// One exposure for all pictures in natural colours.
 fn exposure(record: &Record, luminances: &[f64], areas: &[f64]) -> Exposure {
@@ -193,33 +247,36 @@ fn exposure(record: &Record, luminances: &[f64], areas: &[f64]) -> Exposure {
 }
 
 /// Reference and solution as a camera would show them, one colour a patch.
-fn natural(record: &Record, exposure: &Exposure) -> Vec<Plate> {
-    let shown = format!(
-        "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
-         the reflecting area stays below); lamps may burn out.",
-        significant(exposure.white_luminance, 3)
-    );
-    let palette = |r: &Radiosity| Fill::Flat((0..r.len()).map(|i| Some(exposure.display(r.of(i)))).collect());
-    let plate = |kind, title, caption, radiosity| Plate { kind, title, caption, fill: palette(radiosity), bar: None };
+fn natural(record: &Record, look: &Look) -> Vec<Plate> {
+    let palette = |r: &Radiosity| Fill::Flat((0..r.len()).map(|i| Some(look.shade.display(r.of(i)))).collect());
+    let plate = |kind, title, caption, radiosity| Plate {
+        kind,
+        title,
+        caption,
+        fill: palette(radiosity),
+        bar: None,
+        response: look.shade.response(),
+    };
     vec![
-        plate("reference", "Reference", shown, &record.reference),
-        plate("candidate", "Solution", "The same exposure as the reference.".into(), &record.solution),
+        plate("reference", "Reference", look.words.clone(), &record.reference),
+        plate("candidate", "Solution", "Shown as the reference is.".into(), &record.solution),
     ]
 }
 
 /// The same, shaded between the vertices.
-fn smooth(record: &Record, exposure: &Exposure, mesh: &Mesh) -> Vec<Plate> {
+fn smooth(record: &Record, look: &Look, mesh: &Mesh) -> Vec<Plate> {
     let stencils = Stencils::of(mesh);
     let plate = |kind, title, caption: &str, radiosity: &Radiosity| Plate {
         kind,
         title,
         caption: caption.into(),
-        fill: Fill::Smooth(vertex_colours(&stencils, exposure, radiosity)),
+        fill: Fill::Smooth(vertex_colours(&stencils, look.shade.as_ref(), radiosity)),
         bar: None,
+        response: look.shade.response(),
     };
     vec![
         plate("reference-smooth", "Reference, smoothed", SMOOTHED, &record.reference),
-        plate("candidate-smooth", "Solution, smoothed", "Smoothed alike; the same exposure.", &record.solution),
+        plate("candidate-smooth", "Solution, smoothed", "Smoothed alike.", &record.solution),
     ]
 }
 
@@ -227,7 +284,14 @@ fn false_colour(kind: &'static str, title: &'static str, what: &str, field: &Fie
     let beyond = beyond_range(&scale);
     let bar = colour_bar(&scale, unit);
     let palette = field.values.iter().map(|v| v.map(|v| scale.colour(v))).collect();
-    Plate { kind, title, caption: format!("{what}{beyond}"), fill: Fill::Flat(palette), bar: Some(bar) }
+    Plate {
+        kind,
+        title,
+        caption: format!("{what}{beyond}"),
+        fill: Fill::Flat(palette),
+        bar: Some(bar),
+        response: Response::Srgb,
+    }
 }
 
 /// What a caption says of values that a scale does not reach.

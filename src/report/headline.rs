@@ -94,6 +94,7 @@ fn subject_elsewhere(key: &str, reflected: bool, noun: &str) -> String {
         "worst" => format!("its worst {noun}, relative to the reference there,"),
         "energy" => "its light in excess or missing".into(),
         "worse" => "its growth of error over the baseline".into(),
+        "visible" => "the share of the picture where its error is seen".into(),
         other => format!("its {other}"),
     };
     match place.and_then(|p| p.split_once(':')) {

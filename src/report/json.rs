@@ -101,6 +101,7 @@ pub fn json_object(record: &Record) -> Result<Value, ReportError> {
     if let Value::Object(metrics) = serde_json::to_value(&record.comparison)? {
         object.extend(metrics);
     }
+    object.insert("as_seen".into(), json!(record.as_seen));
     object.insert("causes".into(), json!(record.causes));
     object.insert("split".into(), json!(record.split));
     object.insert("notices".into(), json!(record.notices));

@@ -53,6 +53,7 @@ const RMS: &str = "Area-weighted root-mean-square difference of luminance, relat
 const TOP1: &str = "Eq. 7 over the 1 % of patches that change most";
 const REFLECTED: &str = "Eq. 7 on reflected light alone, emission left out";
 const BIAS: &str = "Light in excess (+) or missing (\u{2212}) over the whole scene";
+const VISIBLE: &str = "Share of the picture that is off by more than one step of the display, of 255";
 const BAND: &str = "Eq. 7 in this band alone";
 const FLOOR: &str =
     "What eq. 7 would read for a perfect solution from the reference's own noise; already taken out above";
@@ -83,6 +84,7 @@ pub fn metric_lines(record: &Record) -> Vec<MetricLine> {
         };
         lines.extend(c.per_band.iter().filter_map(band));
     }
+    lines.extend(record.as_seen.iter().map(|s| of("visible", "Visible error", VISIBLE, &s.share)));
     // Limits by name: on places, on what has no line of its own.
     let own: Vec<String> = lines.iter().map(|l| l.key.clone()).collect();
     let named = record.decision.iter().flat_map(|d| &d.limits).filter(|o| !own.contains(&o.metric));
@@ -101,6 +103,7 @@ fn name_of(key: &str) -> String {
         "worst" => "Worst patch",
         "energy" => "Light in excess or missing",
         "worse" => "Growth of error over the baseline",
+        "visible" => "Visible error",
         other => other,
     };
     place.map_or(what.into(), |p| format!("{what}, {}", p.replacen(':', " ", 1)))
@@ -110,6 +113,7 @@ fn meaning_of(key: &str) -> &'static str {
     match key.split('@').next() {
         Some("worst") => "Largest difference of any patch, relative to the reference there",
         Some("energy") => "Size of the bias: light in excess or missing",
+        Some("visible") => VISIBLE,
         Some("worse") => "Eq. 7 less eq. 7 of the baseline, judged by the same replicates",
         _ => "Eq. 7 in this place alone",
     }

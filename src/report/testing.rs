@@ -52,6 +52,7 @@ pub(crate) fn record() -> Record {
         comparison,
         decision: None,
         split: None,
+        as_seen: None,
         truth: "patch-system".into(),
         settings: vec![
             Setting::new(Part::Judgement, "--confidence", 0.95, 0.95),

@@ -3,8 +3,8 @@
 use crate::io::StoredReference;
 use crate::math::DVec3;
 use crate::metrics::{
-    self, Beside, Breakdown, Comparison, Decision, Judged, Limits, MetricsError, Truth, compare, decide, measure,
-    shared_confidence,
+    self, AsSeen, Beside, Breakdown, Comparison, Decision, Judged, Limits, MetricsError, Truth, Viewing, compare,
+    decide, look, measure, shared_confidence,
 };
 use crate::scene::{Material, NO_FACET, Patch, Region, Stage, StageSurface};
 use crate::solution::Radiosity;
@@ -59,6 +59,11 @@ impl Receivers {
             bands: &self.photometry.bands,
             weights: &self.photometry.weights,
         }
+    }
+
+    /// Which of them emit.
+    pub fn lamps(&self) -> Vec<bool> {
+        self.emission.chunks(self.photometry.bands.len()).map(|e| e.iter().any(|e| *e > 0.0)).collect()
     }
 
     /// Which of them take part.
@@ -140,6 +145,8 @@ pub struct Question {
     pub per_element: bool,
     /// The solution of the baseline, for a limit on becoming worse.
     pub baseline: Option<Radiosity>,
+    /// Who looks, for what can be seen of the error.
+    pub viewing: Option<Viewing>,
 }
 
 impl Question {
@@ -156,6 +163,8 @@ pub struct Judgement {
     pub comparison: Comparison,
     /// The verdict, where limits were given.
     pub decision: Option<Decision>,
+    /// What can be seen of the error, where somebody looks.
+    pub as_seen: Option<AsSeen>,
 }
 
 impl Against {
@@ -192,11 +201,18 @@ pub fn judge(
     {
         scale.name_by_reflectance(rho, rms.value);
     }
-    let beside = Beside { before: before.as_ref(), baseline: question.baseline.as_ref(), objects: &objects };
+    let beside = Beside {
+        before: before.as_ref(),
+        baseline: question.baseline.as_ref(),
+        objects: &objects,
+        viewing: question.viewing.as_ref(),
+    };
     let held = |limits| measure(solution, &truth, &judged, beside, limits, confidence, question.reflected);
     let measured = question.limits.as_ref().map(held).transpose()?;
     let decision = measured.map(|m| decide(&m));
-    Ok(Judgement { comparison, decision })
+    let seen = |v| look(solution, &truth, &judged, v, confidence);
+    let as_seen = question.viewing.as_ref().map(seen).transpose()?.flatten();
+    Ok(Judgement { comparison, decision, as_seen })
 }
 
 /// How the error of a solution is spread, for a report; intervals as in [`judge`].

@@ -18,6 +18,7 @@ mod session;
 mod shoot;
 mod split;
 pub mod validate;
+mod viewing;
 
 pub use baseline::{Baseline, JudgedBy, Taken};
 pub use causes::{Cause, CauseOptions, causes};
@@ -34,3 +35,4 @@ pub use run::{SolveOutcome, SolveRequest, continuous_reference, reference, refer
 pub use session::Session;
 pub use shoot::{Course, Moments, ShootRequest, begin, shoot, shoot_on};
 pub use split::{Beside, SplitError, split_error};
+pub use viewing::{Onlooker, viewing};

@@ -1,7 +1,7 @@
 //! The finished record of a comparison: all a report needs, nothing left to compute.
 
 use super::{Cause, Contributions, Look};
-use crate::metrics::{Breakdown, Comparison, Decision, Split};
+use crate::metrics::{AsSeen, Breakdown, Comparison, Decision, Split};
 use crate::scene::{Finding, Stage};
 use crate::solution::Radiosity;
 use serde::{Deserialize, Serialize};
@@ -20,6 +20,9 @@ pub struct Record {
     /// Where the error comes from; `None` where nothing tells its parts apart.
     #[serde(default)]
     pub split: Option<Split>,
+    /// What can be seen of the error; `None` where nobody looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub as_seen: Option<AsSeen>,
     /// How the error is spread; `None` where no report was asked for.
     pub breakdown: Option<Breakdown>,
     /// What lights the worst patches; empty where no rays can be cast: against another solution, without a scene.

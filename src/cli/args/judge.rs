@@ -2,6 +2,7 @@
 
 use super::brought::BroughtArgs;
 use super::reference::Truth;
+use super::viewing::LookingArgs;
 use crate::cli::values::{Fraction, PerLevel, Span, StateChoice};
 use crate::metrics::Limit;
 use clap::{Args, ValueEnum};
@@ -64,6 +65,9 @@ pub struct CompareArgs {
     /// bounce...): auto, where a check fails.
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = Causes::Auto)]
     pub causes: Causes,
+    /// Who looks: for --max-visible and the pictures of the report.
+    #[command(flatten)]
+    pub looking: LookingArgs,
     /// A solution as another program wrote it.
     #[command(flatten)]
     pub brought: BroughtArgs,
@@ -144,6 +148,10 @@ pub struct LimitArgs {
     /// Limit on the light in excess or missing over the whole scene.
     #[arg(long, value_name = "X", conflicts_with = "residual", allow_hyphen_values = true)]
     pub max_energy: Option<Fraction>,
+    /// Limit on what is seen of the error: the share of the picture that is off by more than one step (of 255) of the
+    /// display, for an eye adapted to the picture. The picture is that of the scene's cameras; see --tone.
+    #[arg(long, value_name = "X", conflicts_with = "residual", allow_hyphen_values = true)]
+    pub max_visible: Option<Fraction>,
     /// A limit by name, as often as you like: METRIC=X or METRIC@WHERE=X; METRIC is rms, worst or energy, WHERE is
     /// surface:NAME, object:NAME or band:NAME. For example rms@surface:floor=3%.
     #[arg(long = "limit", value_name = "LIMIT", conflicts_with = "residual", allow_hyphen_values = true)]

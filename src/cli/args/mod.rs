@@ -35,7 +35,7 @@ pub use scene::{SceneArgs, SceneCommand};
 pub use setup::SetupCommand;
 pub use solve::SolveArgs;
 pub use suites::{ReceiversArgs, ValidateCommand};
-pub use viewing::{Positive, SurroundChoice, ToneChoice, ViewingArgs};
+pub use viewing::{LookingArgs, ToneChoice};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;

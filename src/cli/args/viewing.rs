@@ -1,6 +1,7 @@
 //! Who looks at a picture, and on what: options that several commands share.
 
-use crate::view::{DEFAULT_EFFICACY, Display, Operator};
+use crate::study::Onlooker;
+use crate::view::{DEFAULT_EFFICACY, Display, Operator, Surround};
 use clap::{Args, ValueEnum};
 
 /// Options of natural colours.
@@ -18,6 +19,35 @@ pub struct ViewingArgs {
     /// Background that the eye in the scene is adapted to, cd/m^2; default: by the picture.
     #[arg(long, value_name = "CD/M2", allow_hyphen_values = true)]
     pub adapt: Option<Positive>,
+}
+
+/// The same with the operator.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Looking")]
+pub struct LookingArgs {
+    /// How luminances get to the screen: tr93 (as the eye would see it), tr93-consistent, film, television or brightest.
+    #[arg(long, value_name = "OPERATOR", default_value = "tr93")]
+    pub tone: Operator,
+    /// Screen and eye.
+    #[command(flatten)]
+    pub viewing: ViewingArgs,
+}
+
+impl ViewingArgs {
+    /// Somebody who looks so.
+    pub fn onlooker(&self, operator: Operator) -> Onlooker {
+        Onlooker {
+            operator,
+            surround: match self.surround {
+                SurroundChoice::Dark => Surround::Dark,
+                SurroundChoice::Dim => Surround::Dim,
+                SurroundChoice::Bright => Surround::Bright,
+            },
+            display: self.display.clone(),
+            efficacy: self.efficacy.0,
+            adapt: self.adapt.map(|a| a.0),
+        }
+    }
 }
 
 /// The light around a screen.

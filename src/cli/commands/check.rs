@@ -7,8 +7,8 @@ use crate::cli::args::{Causes, CheckArgs, CompareArgs, Kernel, OnInconclusive};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::io::atomic;
-use crate::metrics::{Limits, Verdict};
-use crate::render::{View, Visibility, fit_camera, resized};
+use crate::metrics::{Limits, Metric, Truth, Verdict, Viewing};
+use crate::render::{View, Visibility, fit_camera, luminance, resized, views};
 use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, one_line, text_summary};
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
@@ -138,7 +138,14 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         reflected: args.reflected,
         per_element: bench.per_element,
         baseline: baseline.as_ref().map(study::Baseline::radiosity),
+        viewing: None,
     };
+    let stage = bench.stage.clone();
+    let looks_at_it = args.report.is_some() || asked.limits.as_ref().is_some_and(|l| l.has(Metric::Visible));
+    let session = if looks_at_it { open(&stage, kernel, console)? } else { None };
+    let seen = session.as_ref().map_or(Vec::new(), |s| views(&s.tracer()));
+    question.viewing = look(asked, &bench, &seen)?;
+    watch.lap("casting the pictures");
     let (judgement, looks) = match asked.check.filter(|_| asked.until_decided) {
         Some(check) => looks::until_decided(check, &mut bench, &mut question, kernel, console)?,
         None => {
@@ -156,6 +163,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         comparison: judgement.comparison,
         breakdown: None,
         split,
+        as_seen: judgement.as_seen,
         contributions: Vec::new(),
         findings: told::findings(&bench.against),
         notices: notices(asked, &bench, &looks),
@@ -173,13 +181,33 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         write_markdown(path, &record, &bench.stage, kernel, console)?;
     }
     if let Some(folder) = &args.report {
-        let session = open(&bench.stage, kernel, console)?;
         record.breakdown = Some(break_down(&bench.solution, &bench.against, &bench.receivers, &question)?);
         record.contributions = explain(session.as_ref(), &record, &bench.against, &bench.solution, bench.per_element);
         watch.lap("casting the rows of the worst again");
-        write_report(folder, &record, session.as_ref(), watch)?;
+        write_report(folder, &record, &seen, watch)?;
     }
     Ok(record)
+}
+
+/// Who looks at the judged scene, where there are pictures of it; adapted to the reference.
+fn look(asked: &Asked, bench: &Bench, views: &[View]) -> Result<Option<Viewing>, Failure> {
+    if views.is_empty() {
+        return match asked.limits.as_ref().is_some_and(|l| l.has(Metric::Visible)) {
+            true => Err(Failure::input(
+                "--max-visible looks at pictures of the scene, and there is none here; give --scene, or a reference that \
+                 holds its scene",
+            )),
+            false => Ok(None),
+        };
+    }
+    let mean = match bench.against.truth(bench.per_element)? {
+        Truth::Sampled(r) => r.mean(),
+        Truth::Given(b) => b,
+    };
+    let (photometry, looking) = (&bench.receivers.photometry, &asked.args.looking);
+    let onlooker = looking.viewing.onlooker(looking.tone);
+    let luminances = luminance(photometry, &mean);
+    Ok(Some(study::viewing(&onlooker, &bench.stage, bench.per_element, views, &bench.receivers, &luminances)))
 }
 
 /// What the reader has to know beside the numbers.

@@ -13,10 +13,13 @@ use crate::io::{BandNames, SolutionFormat, atomic, write_folder, write_solution}
 use crate::methods::Method;
 use crate::metrics::{Limits, Verdict};
 use crate::reference::Options;
+use crate::render::{luminance, views};
 use crate::report::text_summary;
 use crate::scene::Stage;
 use crate::solution::Provenance;
-use crate::study::{self, Against, Part, Question, Receivers, Record, Setting, SolveRequest, break_down, judge};
+use crate::study::{
+    self, Against, Onlooker, Part, Question, Receivers, Record, Setting, SolveRequest, break_down, judge,
+};
 use serde_json::json;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -57,8 +60,16 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
     watch.lap("hemi-cubes");
 
     let limits = Limits::rms(MAX_RMS);
-    let question =
-        Question { limits: Some(limits), confidence: told::CONFIDENCE, reflected: true, ..Question::default() };
+    let seen = views(&session.tracer());
+    let luminances = luminance(&stage.photometry, &stored.patches.mean());
+    let viewing = study::viewing(&Onlooker::default(), &stage, false, &seen, &receivers, &luminances);
+    let question = Question {
+        limits: Some(limits),
+        confidence: told::CONFIDENCE,
+        reflected: true,
+        viewing: Some(viewing),
+        ..Question::default()
+    };
     let against = Against::Reference(Box::new(stored));
     let judgement = judge(&outcome.radiosity, &against, None, &receivers, &question)?;
     let verdict = judgement.decision.as_ref().map(|d| d.verdict);
@@ -70,6 +81,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
         decision: judgement.decision,
         comparison: judgement.comparison,
         split: None,
+        as_seen: judgement.as_seen,
         breakdown: Some(breakdown),
         contributions: Vec::new(),
         causes: Vec::new(),
@@ -86,7 +98,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
     watch.lap("judging");
     record.contributions = explain(Some(&session), &record, &against, &outcome.radiosity, false);
     watch.lap("casting the rows of the worst again");
-    let page = write_report(output, &record, Some(&session), watch)?;
+    let page = write_report(output, &record, &seen, watch)?;
     let seconds = begin.elapsed().as_secs_f64();
     let colour = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let text = format!(

@@ -15,6 +15,7 @@ pub fn given(args: &CheckArgs) -> Result<Limits, Failure> {
         (Metric::Top1, args.max_top1),
         (Metric::Worst, more.max_worst),
         (Metric::Energy, more.max_energy),
+        (Metric::Visible, more.max_visible),
     ];
     let mut all: Vec<Limit> = whole.into_iter().filter_map(|(m, max)| Some(Limit::new(m, max?.0))).collect();
     all.extend(more.named.iter().cloned());
@@ -25,7 +26,8 @@ pub fn given(args: &CheckArgs) -> Result<Limits, Failure> {
     }
     if all.is_empty() {
         return Err(Failure::input(
-            "a check needs at least one limit: give --max-rms, --max-top1, --max-worst, --max-energy, --limit or --baseline",
+            "a check needs at least one limit: give --max-rms, --max-top1, --max-worst, --max-energy, --max-visible, --limit \
+             or --baseline",
         ));
     }
     if let Some(twice) = (1..all.len()).find(|k| all[..*k].iter().any(|l| l.key() == all[*k].key())) {

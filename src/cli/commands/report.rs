@@ -5,11 +5,11 @@ use crate::cli::args::Kernel;
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::io::FileError;
-use crate::render::views;
+use crate::render::{View, views};
 use crate::report::{
     Exporter, Extras, HtmlReport, PAGE_NAME, Phase, RECORD_NAME, TIMING_NAME, read_record, read_timing, save,
 };
-use crate::study::{Record, Session};
+use crate::study::Record;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -45,7 +45,8 @@ pub fn run(folder: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
     })?;
     let timing = timing(&folder.join(TIMING_NAME))?;
     let session = open(&record.stage, kernel, console)?;
-    let page = write(folder, &record, session.as_ref(), |_| timing)?;
+    let seen = session.map_or(Vec::new(), |s| views(&s.tracer()));
+    let page = write(folder, &record, &seen, &timing)?;
     console.result(&page.display().to_string(), &json!({ "report": page }));
     Ok(exit::DONE)
 }
@@ -57,28 +58,13 @@ fn timing(path: &Path) -> Result<Vec<Phase>, Failure> {
 }
 
 /// Writes the report folder of a record; returns the page's path.
-pub fn write_report(
-    folder: &Path,
-    record: &Record,
-    session: Option<&Session>,
-    mut watch: Stopwatch,
-) -> Result<PathBuf, Failure> {
-    write(folder, record, session, |what| {
-        watch.lap(what);
-        watch.phases
-    })
+pub fn write_report(folder: &Path, record: &Record, views: &[View], watch: Stopwatch) -> Result<PathBuf, Failure> {
+    write(folder, record, views, &watch.phases)
 }
 
-/// A comparison without a scene has no geometry to show, hence no session.
-fn write(
-    folder: &Path,
-    record: &Record,
-    session: Option<&Session>,
-    timing: impl FnOnce(&str) -> Vec<Phase>,
-) -> Result<PathBuf, Failure> {
-    let seen = session.map_or(Vec::new(), |s| views(&s.tracer()));
-    let timing = timing("casting the pictures");
-    let artifacts = HtmlReport.export(record, &Extras { views: &seen, timing: &timing })?;
+/// A comparison without a scene has no geometry to show, hence no views.
+fn write(folder: &Path, record: &Record, views: &[View], timing: &[Phase]) -> Result<PathBuf, Failure> {
+    let artifacts = HtmlReport.export(record, &Extras { views, timing })?;
     save(folder, &artifacts)?;
     Ok(folder.join(PAGE_NAME))
 }

@@ -2,14 +2,15 @@
 
 use super::check::Asked;
 use super::inputs;
-use crate::cli::args::{CompareArgs, Kernel, OnInconclusive, Truth};
+use crate::cli::args::{CompareArgs, Kernel, LookingArgs, OnInconclusive, Truth};
 use crate::cli::values::{Fraction, PerLevel, StateChoice};
 use crate::estimate::{Estimator, Plan};
 use crate::metrics::Verdict;
 use crate::reference::Options;
 use crate::scene::{Finding, Stage};
 use crate::solution::{Provenance, TruthLevel};
-use crate::study::{Against, Part, Setting};
+use crate::study::{Against, Onlooker, Part, Setting};
+use crate::view::Surround;
 
 /// Confidence without being asked.
 pub const CONFIDENCE: f64 = 0.95;
@@ -75,6 +76,7 @@ pub fn settings(asked: &Asked, against: &Against) -> Vec<Setting> {
         out.push(Setting::new(of, "--max-top1", fraction(check.max_top1), NONE));
         out.push(Setting::new(of, "--max-worst", fraction(check.limits.max_worst), NONE));
         out.push(Setting::new(of, "--max-energy", fraction(check.limits.max_energy), NONE));
+        out.push(Setting::new(of, "--max-visible", fraction(check.limits.max_visible), NONE));
         let named: Vec<String> = check.limits.named.iter().map(ToString::to_string).collect();
         out.push(Setting::new(of, "--limit", if named.is_empty() { NONE.into() } else { named.join(", ") }, NONE));
         let baseline = check.limits.baseline.as_ref().map_or(NONE.to_string(), |p| p.display().to_string());
@@ -98,6 +100,7 @@ pub fn settings(asked: &Asked, against: &Against) -> Vec<Setting> {
         let edge = args.max_edge.map_or("as the scene says".to_string(), |e| format!("{e} m"));
         out.push(Setting::new(of, "--max-edge", edge, "as the scene says"));
     }
+    out.extend(looking(&args.looking).map(|(name, value, default)| Setting::new(of, name, value, default)));
     out.push(Setting::new(of, "--kernel", kernel(asked.kernel), kernel(Kernel::Auto)));
     if let Against::Reference(r) = against {
         out.extend(of_reference(&r.provenance, &r.stage));
@@ -123,6 +126,21 @@ pub fn of_reference(p: &Provenance, stage: &Stage) -> Vec<Setting> {
     ]
 }
 
+/// Options of looking: name, value, default.
+fn looking(args: &LookingArgs) -> [(&'static str, String, String); 5] {
+    let (v, usual) = (&args.viewing, Onlooker::default());
+    let given = v.onlooker(args.tone);
+    let surround = |s: Surround| format!("{s:?}").to_lowercase();
+    [
+        ("--tone", args.tone.name().into(), usual.operator.name().into()),
+        ("--display", given.display.name, usual.display.name),
+        ("--surround", surround(given.surround), surround(usual.surround)),
+        ("--efficacy", given.efficacy.to_string(), usual.efficacy.to_string()),
+        ("--adapt", given.adapt.map_or(BY_PICTURE.into(), |a| a.to_string()), BY_PICTURE.into()),
+    ]
+}
+
+const BY_PICTURE: &str = "by the picture";
 const NONE: &str = "none";
 
 fn level(per: PerLevel) -> &'static str {
@@ -202,6 +220,7 @@ pub fn replay(asked: &Asked) -> String {
         option("--max-top1", fraction(c.max_top1));
         option("--max-worst", fraction(c.limits.max_worst));
         option("--max-energy", fraction(c.limits.max_energy));
+        option("--max-visible", fraction(c.limits.max_visible));
         c.limits.named.iter().for_each(|l| option("--limit", Some(l.to_string())));
         option("--baseline", c.limits.baseline.as_ref().map(|p| p.display().to_string()));
         option("--max-worse", fraction(c.limits.max_worse));
@@ -209,6 +228,9 @@ pub fn replay(asked: &Asked) -> String {
     }
     option("--confidence", (args.confidence.0 != CONFIDENCE).then(|| args.confidence.0.to_string()));
     option("--per", (args.per == PerLevel::Element).then(|| "element".to_string()));
+    for (name, value, default) in looking(&args.looking) {
+        option(name, (value != default).then_some(value));
+    }
     option("--kernel", (asked.kernel != Kernel::Auto).then(|| kernel(asked.kernel).to_string()));
     option("--report", args.report.as_ref().map(|p| p.display().to_string()));
     if args.reflected {

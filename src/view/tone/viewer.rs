@@ -68,6 +68,18 @@ impl Viewer {
         STEPS * self.drive(radiosity).shown()
     }
 
+    /// The radiosities that are shown within one step of this one: from the first to the second.
+    pub fn alike(&self, radiosity: f64) -> (f64, f64) {
+        let here = self.steps(radiosity);
+        let radiosity_at = |steps: f64| {
+            let scene = self.tone.scene(self.display.luminance(steps / STEPS));
+            scene.map(|l| l / Self::luminance_of(self.efficacy, 1.0))
+        };
+        let below = if here > 1.0 { radiosity_at(here - 1.0) } else { None };
+        let above = if here < STEPS - 1.0 { radiosity_at(here + 1.0) } else { None };
+        (below.unwrap_or(f64::NEG_INFINITY), above.unwrap_or(f64::INFINITY))
+    }
+
     /// The least change of this radiosity that moves the screen by one step, as a share of it. `None` where it gives no
     /// light, or none would.
     pub fn least_visible(&self, radiosity: f64) -> Option<f64> {

@@ -2,24 +2,23 @@
 
 use super::Look;
 use super::subject::Subject;
-use crate::cli::args::{SurroundChoice, ToneChoice, ViewingArgs};
-use crate::render::{Clipped, Exposure, Mesh, Seen, Shade, ToneMap, Visibility, luminance, picture_levels};
+use crate::cli::args::ToneChoice;
+use crate::render::{Clipped, Exposure, Mesh, Seen, Shade, ToneMap, Visibility, luminance};
 use crate::solution::Radiosity;
-use crate::view::{Operator, Surround, Viewer};
+use crate::study::Onlooker;
 use serde_json::{Value, json};
 
 /// How colours of all pictures are made.
-pub(super) enum Natural<'a> {
+pub(super) enum Natural {
     /// One linear scale for all of them.
     Linear(Exposure),
     /// By an eye that adapts to each of them.
-    Eye(Eye<'a>),
+    Eye(Eye),
 }
 
 /// An eye before it looks.
-pub(super) struct Eye<'a> {
-    operator: Operator,
-    viewing: &'a ViewingArgs,
+pub(super) struct Eye {
+    onlooker: Onlooker,
     /// Luminance of every cell that it adapts to, weighted by band, W/m^2.
     luminances: Vec<f64>,
     is_lamp: Vec<bool>,
@@ -31,14 +30,15 @@ pub(super) enum Shown {
     Eye(Box<ToneMap>, Clipped),
 }
 
-impl<'a> Natural<'a> {
+impl Natural {
     /// As the options say, fitted to the reference where there is one, else to what is shown.
-    pub(super) fn new(subject: &Subject, b: &Radiosity, look: &Look<'a>) -> Self {
+    pub(super) fn new(subject: &Subject, b: &Radiosity, look: &Look) -> Self {
         let (photometry, receivers) = (&subject.receivers.photometry, &subject.receivers);
-        let is_lamp: Vec<bool> = receivers.emission.chunks(b.bands).map(|e| e.iter().any(|e| *e > 0.0)).collect();
+        let is_lamp = receivers.lamps();
         let luminances = luminance(photometry, subject.yardstick.as_ref().unwrap_or(b));
         if let ToneChoice::Operator(operator) = look.tone {
-            return Self::Eye(Eye { operator, viewing: &look.args.viewing, luminances, is_lamp });
+            let onlooker = look.args.viewing.onlooker(operator);
+            return Self::Eye(Eye { onlooker, luminances, is_lamp });
         }
         let fitted = Exposure::fit(photometry, &luminances, &receivers.areas, &is_lamp);
         Self::Linear(match (look.args.white, look.args.exposure) {
@@ -57,15 +57,10 @@ impl<'a> Natural<'a> {
     }
 }
 
-impl Eye<'_> {
+impl Eye {
     fn look(&self, visibility: &Visibility, mesh: &Mesh) -> Shown {
-        let (seen, v) = (Seen::of(mesh, [visibility]), self.viewing);
-        let in_candela = |y: &f64| Viewer::luminance_of(v.efficacy.0, *y);
-        let mut levels = picture_levels(&seen, self.luminances.iter().map(in_candela), &self.is_lamp);
-        if let Some(background) = v.adapt {
-            levels = levels.adapted_to(background.0);
-        }
-        let viewer = Viewer::new(self.operator, v.surround.into(), v.display.clone(), v.efficacy.0, levels);
+        let seen = Seen::of(mesh, [visibility]);
+        let viewer = self.onlooker.look(&seen, &self.luminances, &self.is_lamp);
         let map = ToneMap::new(viewer, &mesh.stage().photometry);
         let clipped = map.clipped(self.luminances.iter().copied().zip(seen.shares));
         Shown::Eye(Box::new(map), clipped)
@@ -97,16 +92,6 @@ impl Shown {
                 json!({ "operator": "linear", "white_luminance": e.white_luminance, "scale": e.scale })
             }
             Self::Eye(map, clipped) => crate::report::tone_json(&map.viewer, *clipped),
-        }
-    }
-}
-
-impl From<SurroundChoice> for Surround {
-    fn from(choice: SurroundChoice) -> Self {
-        match choice {
-            SurroundChoice::Dark => Self::Dark,
-            SurroundChoice::Dim => Self::Dim,
-            SurroundChoice::Bright => Self::Bright,
         }
     }
 }

@@ -19,7 +19,7 @@ pub(super) struct Painter<'a> {
     stencils: Stencils,
     style: RenderStyle,
     caption: bool,
-    natural: Option<Natural<'a>>,
+    natural: Option<Natural>,
     /// What is shown in natural colours.
     radiosity: Option<&'a Radiosity>,
     quantity: Option<False>,
@@ -38,7 +38,7 @@ struct False {
 }
 
 impl<'a> Painter<'a> {
-    pub(super) fn new(subject: &'a Subject, look: &Look<'a>) -> Result<Self, Failure> {
+    pub(super) fn new(subject: &'a Subject, look: &Look) -> Result<Self, Failure> {
         let stage = &subject.stage;
         let mesh = if subject.per_element { Mesh::of_elements(stage) } else { Mesh::of_patches(stage) };
         let stencils = Stencils::of(&mesh);
