@@ -240,6 +240,7 @@ fn what_is_printed_keeps_the_published_schema() {
         "check coarse.csv --reference ref --max-rms 0.1% --max-worst 5% --limit rms@band:g=3% --baseline main.json",
         "check fine.csv --reference ref --max-rms 5% --reflected --until-decided",
         "check coarse.csv --reference ref --before fine.csv --max-top1 5%",
+        "check coarse.csv --reference ref --max-visible 10% --tone tr93-consistent --display crt",
         "check missing.csv --reference ref --max-rms 5%",
     ] {
         sound(&told(here, arguments).1);
@@ -342,4 +343,29 @@ fn patches_without_a_value_are_named_or_left_out_on_demand() {
     let (code, v) = told(here, "check cut.ply --reference ref --max-rms 5% --skip-unmatched");
     assert_eq!(code, 0, "{v}");
     assert!(v["notices"].to_string().contains("left out"), "{v}");
+}
+
+#[test]
+fn what_is_seen_can_be_a_limit() {
+    let place = workshop();
+    let here = place.path();
+    let (code, seen) = told(here, "check coarse.csv --reference ref --max-visible 100%");
+    assert_eq!(code, 0, "{seen}");
+    let share = &seen["as_seen"]["share"];
+    let (low, high) = (share["low"].as_f64().expect("a number"), share["high"].as_f64().expect("a number"));
+    assert!(low > 0.0 && high <= 1.0 && share["std_err"].is_null(), "{share}");
+    assert_eq!(seen["limits"][0]["metric"], "visible");
+    // How accurate it would have to be: a step of the display is between a thousandth and a few per cent of the light.
+    let needed = &seen["as_seen"]["needed"];
+    let everywhere = needed["everywhere"].as_f64().expect("a number");
+    assert!(everywhere > 1e-3 && everywhere < 0.1 && needed["median"].as_f64() >= Some(everywhere), "{needed}");
+    let (code, _) = told(here, &format!("check coarse.csv --reference ref --max-visible {}", 0.5 * low));
+    assert_eq!(code, 1);
+    // The reference itself is seen to be wrong nowhere.
+    let (_, exact) = told(here, "check ref --reference ref --max-visible 0");
+    assert_eq!((&exact["as_seen"]["share"]["value"], &exact["as_seen"]["worst"]["steps"]), (&0.0.into(), &0.0.into()));
+    let err = told(here, "check coarse.csv --reference fine.csv --max-visible 1%").1;
+    assert!(err["error"]["message"].as_str().is_some_and(|m| m.contains("--scene")), "{err}");
+    let err = told(here, "check coarse.csv --reference ref --limit visible=1%").1;
+    assert!(err["error"]["message"].as_str().is_some_and(|m| m.contains("--max-visible")), "{err}");
 }

@@ -34,7 +34,7 @@ fn furnace() -> tempfile::TempDir {
 fn a_furnace_is_one_colour_in_every_style() {
     let place = furnace();
     for style in ["smooth", "constant", "both"] {
-        let size = "--size 60x40 --caption off -o out.png";
+        let size = "--size 60x40 --caption off --tone linear -o out.png";
         ok(
             place.path(),
             &format!("render builtin:furnace --solution furnace.csv --style {style} {size} --exposure -1"),
@@ -59,6 +59,9 @@ fn layers_hold_the_numbers() {
         let FlatSamples::F32(values) = &found[name] else { panic!("numbers") };
         assert!(values.len() == 600 && values.iter().all(|v| (v - 2.0).abs() < 1e-6), "{name}");
     }
+    let FlatSamples::F32(luminance) = &found["luminance.Y"] else { panic!("luminances") };
+    let expected = (179.0 * 2.0 / std::f64::consts::PI) as f32;
+    assert!(luminance.iter().all(|v| (v / expected - 1.0).abs() < 1e-6));
     let FlatSamples::U32(numbers) = &found["patch.number"] else { panic!("numbers") };
     assert!(numbers.iter().all(|n| *n < 96));
 }
@@ -87,8 +90,9 @@ fn a_reference_shows_itself_with_its_errors_and_sets_the_exposure() {
     ok(here, "reference builtin:cube-one-emitter -o ref --rays 256");
     ok(here, "solve builtin:cube-one-emitter --method gather:rays=256 -o mine.csv");
     let white = |arguments: &str| -> f64 {
-        let json: Value = serde_json::from_str(&ok(here, &format!("{arguments} --size 40x30 --json"))).expect("JSON");
-        json["exposure"]["white_luminance"].as_f64().expect("a number")
+        let json: Value =
+            serde_json::from_str(&ok(here, &format!("{arguments} --tone linear --size 40x30 --json"))).expect("JSON");
+        json["pictures"][0]["tone"]["white_luminance"].as_f64().expect("a number")
     };
     let own = white("render ref -o a.png");
     assert_eq!(own, white("render ref --solution mine.csv -o b.png"));
@@ -234,4 +238,82 @@ fn mistakes_are_refused_with_the_mend_and_leave_nothing_behind() {
         assert!(err.contains(mend), "{arguments}: {err}");
     }
     assert_eq!(std::fs::read_dir(here).expect("a folder").count(), before);
+}
+
+/// What `render --json` says of its only picture.
+fn tone(here: &Path, arguments: &str) -> Value {
+    let json: Value = serde_json::from_str(&ok(here, &format!("{arguments} --json"))).expect("JSON");
+    json["pictures"][0]["tone"].clone()
+}
+
+/// Every pixel of a furnace has one luminance, 2 W/m^2 times 179 / pi: the eye is adapted to 10^0.84 times that, and the
+/// bytes follow by eqs. 7 to 15, worked out here from the printed formulas.
+#[test]
+fn a_furnace_is_shown_as_the_paper_says() {
+    let place = furnace();
+    let here = place.path();
+    let lambert = 1e4 / std::f64::consts::PI;
+    let luminance: f64 = 179.0 * 2.0 / std::f64::consts::PI;
+    let alpha = |w: f64| 0.4 * (w / lambert).log10() + 2.92;
+    let beta = |w: f64| -0.4 * (w / lambert).log10().powi(2) - 2.584 * (w / lambert).log10() + 2.0208;
+    for (display, peak, contrast, gamma) in [("crt", 86.0f64, 35.0f64, 1.2), ("400:900:2.2", 400.0, 900.0, 2.2)] {
+        for (operator, viewer) in [("tr93", 1.0), ("tr93-consistent", 10f64.powf(0.84))] {
+            let (eye, screen) = (luminance * 10f64.powf(0.84), viewer * peak / contrast.sqrt());
+            let brils = beta(eye) + alpha(eye) * (luminance / lambert).log10();
+            let shown = lambert * 10f64.powf((brils - beta(screen)) / alpha(screen));
+            let n = (shown / peak - 1.0 / contrast).max(0.0).powf(1.0 / gamma);
+            let byte = (255.0 * n).round() as u8;
+            let common = format!("render builtin:furnace --solution furnace.csv --tone {operator} --display {display}");
+            let told = tone(here, &format!("{common} --size 20x10 -o out.png"));
+            assert_eq!(colours(&pixels(&here.join("out.png"))), BTreeSet::from([[byte, byte, byte, 255]]), "{common}");
+            assert!((told["adapted_to"].as_f64().expect("a number") / eye - 1.0).abs() < 1e-6, "{told}");
+            assert_eq!(told["clipped_black"], f64::from(u8::from(n == 0.0)), "{told}");
+        }
+    }
+}
+
+#[test]
+fn from_searchlight_to_firefly_the_eye_tells_and_the_scaling_does_not() {
+    let place = tempfile::tempdir().expect("a folder");
+    let here = place.path();
+    ok(here, "solve builtin:cornell-box-coarse --method gather:rays=256 -o mine.csv");
+    let picture = |lamp: f64, operator: &str| {
+        let common = format!("render builtin:cornell-box-coarse --solution mine.csv --size 60x60 --tone {operator}");
+        let told = tone(here, &format!("{common} --display crt --lamp {lamp} -o out.png"));
+        let mean = pixels(&here.join("out.png")).pixels().map(|p| f64::from(p.0[1])).sum::<f64>() / 3600.0;
+        (told, mean)
+    };
+    // 1,000 lamberts.
+    let lamps = [3.183_098_86e6, 3.183_098_86e4, 3.183_098_86e2, 3.183_098_86];
+    let eyes: Vec<(Value, f64)> = lamps.iter().map(|l| picture(*l, "tr93")).collect();
+    assert!(eyes.windows(2).all(|w| w[0].1 > w[1].1 + 1.0), "{eyes:?}");
+    // Adaptation follows the light, a factor of 100 a picture.
+    let adapted = |k: usize| eyes[k].0["adapted_to_db"].as_f64().expect("a number");
+    assert!((1..4).all(|k| (adapted(k - 1) - adapted(k) - 20.0).abs() < 1e-6));
+    let scaled: Vec<f64> = [lamps[0], lamps[3]].iter().map(|l| picture(*l, "brightest").1).collect();
+    assert_eq!(scaled[0], scaled[1]);
+    // A hundred thousandth of a candela: below 27 dB more light would look darker, and the picture says so.
+    let dark = picture(1e-5, "tr93").0;
+    assert_eq!(dark["below_27_db"], true);
+    assert_eq!(eyes[0].0["below_27_db"], false);
+    let told = ok(here, "render builtin:cornell-box-coarse --solution mine.csv --tone tr93 --lamp 1e-5 -o out.png");
+    assert!(told.contains("27 dB"), "{told}");
+}
+
+#[test]
+fn wrong_eyes_and_screens_are_refused() {
+    let place = furnace();
+    for (option, mend) in [
+        ("--tone gamma", "tr93-consistent"),
+        ("--display lcd", "PEAK:CONTRAST:GAMMA"),
+        ("--display 80:1:2.2", "contrast above 1"),
+        ("--efficacy 0", "above 0"),
+        ("--adapt -3", "above 0"),
+        ("--tone tr93 --exposure 1", "--tone linear"),
+        ("--lamp nan", "above 0"),
+    ] {
+        let err = refused(place.path(), &format!("render builtin:furnace --solution furnace.csv {option} -o x.png"));
+        assert!(err.contains(mend), "{option}: {err}");
+    }
+    assert!(!place.path().join("x.png").exists());
 }

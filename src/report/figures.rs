@@ -5,7 +5,6 @@ use super::artifact::check_shape;
 use super::asked::Level;
 use super::format::{count, round_number, significant};
 use super::tone::tone_words;
-use crate::metrics::AsSeen;
 use crate::render::{
     Exposure, Field, LinearRgb, Mesh, Raster, Scale, Seen, Shade, Stencils, ToneMap, View, Visibility, difference,
     in_standard_errors, luminance, luminance_std_err, paint_cells, paint_smooth, relative_difference, to_srgb8,
@@ -129,6 +128,32 @@ fn print(plate: &Plate, visibility: &Visibility, mesh: &Mesh) -> Figure {
 }
 
 fn plates(record: &Record, views: &[View], mesh: &Mesh) -> Vec<Plate> {
+    let look = Look::of(record, views, mesh);
+    let mut all = natural(record, &look);
+    all.extend(shown_fields(record).into_iter().map(false_colour));
+    all.extend(smooth(record, &look, mesh));
+    all
+}
+
+/// One number per patch that is shown in false colour, with its words and its scale.
+pub(super) struct ShownField {
+    /// `difference`, `relative`, `std_err`, `z`, `steps` or `brils`.
+    pub kind: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What is shown, without what the scale leaves out.
+    pub what: String,
+    /// The numbers.
+    pub field: Field,
+    /// Their colours.
+    pub scale: Scale,
+    /// Their unit.
+    pub unit: Unit,
+}
+
+/// What is shown in false colour: the errors of the reference only where there are any, what is seen only where somebody
+/// looks.
+pub(super) fn shown_fields(record: &Record) -> Vec<ShownField> {
     let (stage, photometry) = (&record.stage, &record.stage.photometry);
     let areas = stage.areas();
     let reference = luminance(photometry, &record.reference);
@@ -138,23 +163,29 @@ fn plates(record: &Record, views: &[View], mesh: &Mesh) -> Vec<Plate> {
     let noise = luminance_std_err(photometry, &record.reference);
     let z = tested(record)
         .unwrap_or_else(|| in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution)));
-    let look = Look::of(record, views, mesh, &reference, &areas);
-    let mut all = natural(record, &look);
+    let shown = |kind, title, what: String, field, scale, unit| ShownField { kind, title, what, field, scale, unit };
     let scale = Scale::symmetric(&wrong, &areas, 0.0);
-    all.push(false_colour("difference", "Signed difference", WRONG, &wrong, scale, WATTS));
+    let mut all = vec![shown("difference", "Signed difference", WRONG.into(), wrong, scale, WATTS)];
     let scale = Scale::symmetric(&relative, &areas, 0.0);
-    all.push(false_colour("relative", "Relative difference", RELATIVE, &relative, scale, PERCENT));
+    all.push(shown("relative", "Relative difference", RELATIVE.into(), relative, scale, PERCENT));
     if !noise.is_blank() {
         let scale = Scale::from_zero(&noise, &areas);
-        all.push(false_colour("std_err", "Standard error of the reference", NOISE, &noise, scale, WATTS));
+        all.push(shown("std_err", "Standard error of the reference", NOISE.into(), noise, scale, WATTS));
         let scale = Scale::symmetric(&z, &areas, LEAST_Z);
         let what = format!("{IN_ERRORS}{}", beyond(record));
-        all.push(false_colour("z", "Difference in standard errors", &what, &z, scale, ERRORS));
+        all.push(shown("z", "Difference in standard errors", what, z, scale, ERRORS));
     }
     if let Some(seen) = &record.as_seen {
-        all.extend(as_seen(seen, &reference, &solution, &areas));
+        let viewer = &seen.viewer;
+        let off = |of: &dyn Fn(f64) -> f64| Field {
+            values: reference.iter().zip(&solution).map(|(r, s)| Some(of(*s) - of(*r))).collect(),
+        };
+        let (steps, brils) = (off(&|y| viewer.steps(y)), off(&|y| viewer.brightness(y)));
+        let scale = Scale::symmetric(&steps, &areas, 1.0);
+        all.push(shown("steps", "Difference in display steps", IN_STEPS.into(), steps, scale, STEPS));
+        let scale = Scale::symmetric(&brils, &areas, 0.0);
+        all.push(shown("brils", "Difference in brightness", IN_BRILS.into(), brils, scale, BRILS));
     }
-    all.extend(smooth(record, &look, mesh));
     all
 }
 
@@ -206,44 +237,32 @@ struct Look {
 
 impl Look {
     /// Through the eye that the record was looked at with, else on one linear scale.
-    fn of(record: &Record, views: &[View], mesh: &Mesh, luminances: &[f64], areas: &[f64]) -> Self {
+    fn of(record: &Record, views: &[View], mesh: &Mesh) -> Self {
         let Some(seen) = &record.as_seen else {
-            let exposure = exposure(record, luminances, areas);
-            let words = format!(
-                "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % \
-                 of the reflecting area stays below); lamps may burn out.",
-                significant(exposure.white_luminance, 3)
-            );
-            return Self { shade: Box::new(exposure), words };
+            let exposure = exposure(record);
+            return Self { words: exposed(&exposure), shade: Box::new(exposure) };
         };
         let map = ToneMap::new(seen.viewer.clone(), &record.stage.photometry);
         let shares = Seen::of(mesh, views.iter().map(|v| &v.visibility)).shares;
-        let clipped = map.clipped(luminances.iter().copied().zip(shares));
+        let clipped = map.clipped(luminance(&record.stage.photometry, &record.reference).into_iter().zip(shares));
         Self { words: tone_words(&map.viewer, clipped), shade: Box::new(map) }
     }
 }
 
-/// The difference as it is seen: in steps of the display and in brils.
-fn as_seen(seen: &AsSeen, reference: &[f64], solution: &[f64], areas: &[f64]) -> Vec<Plate> {
-    let viewer = &seen.viewer;
-    let off = |of: &dyn Fn(f64) -> f64| Field {
-        values: reference.iter().zip(solution).map(|(r, s)| Some(of(*s) - of(*r))).collect(),
-    };
-    let (steps, brils) = (off(&|y| viewer.steps(y)), off(&|y| viewer.brightness(y)));
-    let plate = |kind, title, what, field: &Field, least, unit| {
-        false_colour(kind, title, what, field, Scale::symmetric(field, areas, least), unit)
-    };
-    vec![
-        plate("steps", "Difference in display steps", IN_STEPS, &steps, 1.0, STEPS),
-        plate("brils", "Difference in brightness", IN_BRILS, &brils, 0.0, BRILS),
-    ]
-}
-
 /// One exposure for all pictures in natural colours.
-fn exposure(record: &Record, luminances: &[f64], areas: &[f64]) -> Exposure {
+pub(super) fn exposure(record: &Record) -> Exposure {
     let stage = &record.stage;
     let is_emitter: Vec<bool> = (0..stage.patch_count()).map(|i| stage.emission(i).iter().any(|e| *e > 0.0)).collect();
-    Exposure::fit(&stage.photometry, luminances, areas, &is_emitter)
+    Exposure::fit(&stage.photometry, &luminance(&stage.photometry, &record.reference), &stage.areas(), &is_emitter)
+}
+
+/// What an exposure does, in a sentence.
+pub(super) fn exposed(exposure: &Exposure) -> String {
+    format!(
+        "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
+         the reflecting area stays below); lamps may burn out.",
+        significant(exposure.white_luminance, 3)
+    )
 }
 
 /// Reference and solution as a camera would show them, one colour a patch.
@@ -280,7 +299,8 @@ fn smooth(record: &Record, look: &Look, mesh: &Mesh) -> Vec<Plate> {
     ]
 }
 
-fn false_colour(kind: &'static str, title: &'static str, what: &str, field: &Field, scale: Scale, unit: Unit) -> Plate {
+fn false_colour(shown: ShownField) -> Plate {
+    let ShownField { kind, title, what, field, scale, unit } = shown;
     let beyond = beyond_range(&scale);
     let bar = colour_bar(&scale, unit);
     let palette = field.values.iter().map(|v| v.map(|v| scale.colour(v))).collect();

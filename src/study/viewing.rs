@@ -24,7 +24,7 @@ pub struct Onlooker {
 impl Default for Onlooker {
     fn default() -> Self {
         Self {
-            operator: Operator::Tr93,
+            operator: Operator::default(),
             surround: Surround::default(),
             display: Display::srgb(),
             efficacy: DEFAULT_EFFICACY,

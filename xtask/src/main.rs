@@ -13,6 +13,7 @@ cargo xtask demo   build, provide Embree if there is none, run the Cornell box t
 cargo xtask test   the same set-up, then every test, also those of the feature embree4-rs
 cargo xtask ci     formatting, lints and documentation, all with warnings as errors
 cargo xtask dist   an archive that installs without a checkout, unpacked and run as proof (--help says more)
+cargo xtask gallery  the pictures of the README, into reports/gallery; --all adds the robot room (ten minutes)
 cargo xtask exact  exact form factors of obstructed pairs, from standard input to standard output
 cargo xtask peers  other programs for form factors beside etalon: error against time (--help says more)
 Further arguments go to `etalon demo` or `cargo test`.";
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Some("test") => test(&rest),
         Some("ci") => ci(),
         Some("dist") => dist::dist(&rest),
+        Some("gallery") => gallery(&rest),
         Some("peers") => peers::peers(&rest),
         Some("exact") => exact::run(threads()).map_err(Stopped),
         Some("help" | "--help" | "-h") => {
@@ -62,6 +64,14 @@ fn test(rest: &[String]) -> Result<(), Stopped> {
     run(cargo().args(["test", "--release", "--workspace"]).args(rest))?;
     run(cargo().args(["test", "--release", "--features", "embree4-rs", "--test", "kernels_agree"]))?;
     EXAMPLES.iter().try_for_each(|e| run(cargo().args(["run", "--release", "--example", e])))
+}
+
+/// Makes the committed pictures again.
+fn gallery(rest: &[String]) -> Result<(), Stopped> {
+    set_up()?;
+    let folder = workspace().join("reports").join("gallery");
+    let program = target().join("release").join("etalon");
+    run(cargo().args(["run", "--release", "--example", "gallery", "--"]).args(rest).arg(program).arg(folder))
 }
 
 fn ci() -> Result<(), Stopped> {

@@ -25,15 +25,16 @@ pub struct RenderArgs {
     /// One quantity in false colours with a bar: luminance, std-err, relative-std-err or band:NAME.
     #[arg(long, value_name = "Q")]
     pub quantity: Option<Quantity>,
-    /// How natural colours are made: tr93 (as the eye would see it; default), tr93-consistent, film, television, brightest,
-    /// or linear.
+    /// How natural colours are made: tr93-consistent (as the eye would see it; default), tr93 (the same as printed in 1993:
+    /// dark), film, television, brightest, or linear.
     #[arg(long, value_name = "OPERATOR")]
     pub tone: Option<ToneChoice>,
     #[command(flatten)]
     pub viewing: ViewingArgs,
-    /// All light times whatever gives the brightest lamp this luminance, cd/m^2: light is linear, eyes are not.
-    #[arg(long, value_name = "CD/M2", allow_hyphen_values = true)]
-    pub lamp: Option<Positive>,
+    /// All light times whatever gives the brightest lamp this luminance, cd/m^2: light is linear, eyes are not. Several,
+    /// with commas between them: one picture for each, side by side.
+    #[arg(long, value_name = "CD/M2", value_delimiter = ',', allow_hyphen_values = true)]
+    pub lamp: Vec<Positive>,
     /// Brighter (1 shows everything twice as bright) or darker (-1) than the fitted linear exposure.
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     pub exposure: Option<f64>,

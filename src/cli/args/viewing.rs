@@ -25,8 +25,9 @@ pub struct ViewingArgs {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Looking")]
 pub struct LookingArgs {
-    /// How luminances get to the screen: tr93 (as the eye would see it), tr93-consistent, film, television or brightest.
-    #[arg(long, value_name = "OPERATOR", default_value = "tr93")]
+    /// How luminances get to the screen: tr93-consistent (as the eye would see it), tr93 (the same as printed in 1993: dark),
+    /// film, television or brightest.
+    #[arg(long, value_name = "OPERATOR", default_value = "tr93-consistent")]
     pub tone: Operator,
     /// Screen and eye.
     #[command(flatten)]

@@ -3,6 +3,7 @@
 mod layers;
 mod natural;
 mod picture;
+mod series;
 mod subject;
 mod target;
 
@@ -13,11 +14,12 @@ use crate::cli::exit::{self, Failure};
 use crate::cli::values::PerLevel;
 use crate::io::image::png;
 use crate::raycast::KernelKind;
-use crate::render::{View, Visibility};
+use crate::render::{Raster, Visibility};
 use crate::view::Operator;
 use natural::Shown;
 use picture::Painter;
 use serde_json::{Value, json};
+use series::series;
 use subject::Subject;
 use target::{Target, cameras};
 
@@ -47,16 +49,15 @@ pub fn run(args: &RenderArgs, kernel: KernelKind, console: &Console) -> Result<u
     let (mut files, mut shown, mut words) = (Vec::new(), Vec::new(), Vec::new());
     for ((camera, fitted), stem) in cameras.iter().zip(stems) {
         let visibility = Visibility::cast(&session.tracer(), camera, look.samples());
-        let view = View { visibility, fitted: *fitted };
         let path = target.path(&stem);
-        let looked = painter.look(&view.visibility);
-        let (bytes, size) = encode(&view, &painter, looked.as_ref(), &subject, &target)?;
-        shown.push(json!({
-            "camera": camera.name, "fitted": fitted, "file": path, "width": size[0], "height": size[1],
-            "tone": looked.as_ref().map(Shown::json),
-        }));
-        words.extend(looked.map(|l| l.words()).filter(|w| !words.contains(w)));
-        files.push((path, bytes));
+        let made = Made::of(&visibility, &painter, &subject, &target, &look)?;
+        let mut json = json!({
+            "camera": camera.name, "fitted": fitted, "file": path, "width": made.size[0], "height": made.size[1],
+        });
+        json[if args.lamp.len() > 1 { "lamps" } else { "tone" }] = made.json;
+        shown.push(json);
+        words.extend(made.words.into_iter().filter(|w| !words.contains(w)).collect::<Vec<_>>());
+        files.push((path, made.bytes));
     }
     target.write(&files)?;
     let json = summary(&subject, &look, &painter, shown);
@@ -65,21 +66,41 @@ pub fn run(args: &RenderArgs, kernel: KernelKind, console: &Console) -> Result<u
     Ok(exit::DONE)
 }
 
-fn encode(
-    view: &View,
-    painter: &Painter,
-    shown: Option<&Shown>,
-    subject: &Subject,
-    target: &Target,
-) -> Result<(Vec<u8>, [u32; 2]), Failure> {
-    let bug = |e: crate::io::image::ImageError| Failure::input(e.to_string());
-    if let Target::Exr(_) = target {
-        let bytes = layers::exr_picture(subject, painter, &view.visibility).map_err(bug)?;
-        return Ok((bytes, view.visibility.size()));
+/// A picture as a file.
+struct Made {
+    bytes: Vec<u8>,
+    size: [u32; 2],
+    /// What the colours mean.
+    words: Vec<String>,
+    json: Value,
+}
+
+impl Made {
+    fn of(
+        seen: &Visibility,
+        painter: &Painter,
+        subject: &Subject,
+        target: &Target,
+        look: &Look,
+    ) -> Result<Self, Failure> {
+        let bug = |e: crate::io::image::ImageError| Failure::input(e.to_string());
+        let encoded = |r: &Raster| png(r.width, r.height, &r.rgba).map_err(bug);
+        let args = look.args;
+        if args.lamp.len() > 1 {
+            let lamps: Vec<f64> = args.lamp.iter().map(|l| l.0).collect();
+            let made = series(subject, look, seen, &lamps)?;
+            let size = [made.raster.width, made.raster.height];
+            return Ok(Self { bytes: encoded(&made.raster)?, size, words: made.words, json: Value::Array(made.json) });
+        }
+        let shown = painter.look(seen);
+        let (words, json) = (shown.iter().map(Shown::words).collect(), json!(shown.as_ref().map(Shown::json)));
+        if let Target::Exr(_) = target {
+            let bytes = layers::exr_picture(subject, painter, seen, args.viewing.efficacy.0).map_err(bug)?;
+            return Ok(Self { bytes, size: seen.size(), words: Vec::new(), json });
+        }
+        let raster = painter.paint(seen, shown.as_ref());
+        Ok(Self { bytes: encoded(&raster)?, size: [raster.width, raster.height], words, json })
     }
-    let raster = painter.paint(&view.visibility, shown);
-    let bytes = png(raster.width, raster.height, &raster.rgba).map_err(bug)?;
-    Ok((bytes, [raster.width, raster.height]))
 }
 
 impl<'a> Look<'a> {
@@ -91,6 +112,10 @@ impl<'a> Look<'a> {
             (RenderStyle::Items, Some(_)) => "--style items shows patches, not a quantity; leave one of the two out",
             (_, Some(_)) if exr => "an .exr holds the numbers themselves; leave --quantity out, or write a .png",
             _ if exr && args.caption == Some(OnOff::On) => "an .exr has no room for words; leave --caption out",
+            _ if exr && args.lamp.len() > 1 => "an .exr holds one picture; give --lamp one luminance, or write a .png",
+            (RenderStyle::Items, _) | (_, Some(_)) if args.lamp.len() > 1 => {
+                "a series of lamps is shown in natural colours; leave --style items and --quantity out"
+            }
             _ if args.exposure.is_some_and(|e| !e.is_finite() || e.abs() > 64.0) => {
                 "--exposure must lie between -64 and 64 stops"
             }
@@ -112,7 +137,7 @@ impl<'a> Look<'a> {
             }
             Some(tone) => tone,
             None if linear => ToneChoice::Linear,
-            None => ToneChoice::Operator(Operator::Tr93),
+            None => ToneChoice::Operator(Operator::default()),
         };
         let wordy = style == RenderStyle::Both || args.quantity.is_some();
         Ok(Self { style, tone, caption: args.caption.map_or(wordy, |c| c == OnOff::On), args })

@@ -5,6 +5,7 @@ use super::charts::{Chart, charts};
 use super::findings::{FindingRow, finding_rows};
 use super::groups::{GroupTable, group_tables};
 use super::pictures::{ViewBlock, view_block};
+use super::seen::{Seen, seen};
 use super::settings::{SettingGroup, settings};
 use super::sources::{Card, cards};
 use crate::metrics::Verdict;
@@ -27,6 +28,8 @@ pub(super) struct Page {
     pub facts: Vec<Pair>,
     pub warnings: Vec<Pair>,
     pub metrics: Metrics,
+    /// What an eye would see of the error.
+    pub seen: Option<Seen>,
     pub views: Vec<ViewBlock>,
     pub worst: Worst,
     pub groups: Vec<GroupTable>,
@@ -117,6 +120,7 @@ impl Page {
             facts: facts(record),
             warnings: warnings(record).into_iter().map(|(label, text)| Pair { label, text: minus(&text) }).collect(),
             metrics: metrics(record),
+            seen: seen(record),
             views: views.iter().map(view_block).collect(),
             worst: worst(record, views),
             groups: group_tables(record),

@@ -6,6 +6,7 @@ pub(super) mod context;
 mod findings;
 mod groups;
 pub(super) mod pictures;
+mod seen;
 mod settings;
 mod sources;
 
@@ -26,11 +27,12 @@ use std::collections::BTreeMap;
 pub const PAGE_NAME: &str = "report.html";
 
 /// The page and what it is put together from.
-const TEMPLATES: [(&str, &str); 7] = [
+const TEMPLATES: [(&str, &str); 8] = [
     ("page.html", include_str!("page/page.html.j2")),
     ("style.css", include_str!("page/style.css")),
     ("macros.html", include_str!("page/macros.html.j2")),
     ("numbers.html", include_str!("page/numbers.html.j2")),
+    ("seen.html", include_str!("page/seen.html.j2")),
     ("where.html", include_str!("page/where.html.j2")),
     ("why.html", include_str!("page/why.html.j2")),
     ("how.html", include_str!("page/how.html.j2")),

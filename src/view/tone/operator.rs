@@ -12,12 +12,14 @@ const MIDDLE_GREY: f64 = 0.18;
 const CAMERA_GAMMA: f64 = 1.0 / 2.2;
 
 /// How luminances of a scene become luminances of a screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Operator {
     /// Two observers back to back, as printed [TR93 eq. 13], the screen's adapted to its middle [TR93 eq. 14].
     Tr93,
     /// The same with one rule for both observers: the mean of either view lies 8.4 dB below its background [TR93 eq. 11].
+    /// As printed, a third and more of a picture is blacker than the screen can show, and no error is seen there.
+    #[default]
     Tr93Consistent,
     /// Film on a light table [TR93 eq. 3]: the mean exposed to middle grey.
     Film,
@@ -70,10 +72,12 @@ impl Operator {
     /// What it does, for the reader of a picture.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Tr93 => "as the eye would see it (Tumblin and Rushmeier 1993)",
-            Self::Tr93Consistent => "as the eye would see it, both observers adapted alike",
-            Self::Film => "film: the mean at middle grey",
-            Self::Television => "television: the brightest surface at the peak",
+            Self::Tr93 => "as the eye would see it (Tumblin and Rushmeier 1993, as printed)",
+            Self::Tr93Consistent => {
+                "as the eye would see it (Tumblin and Rushmeier 1993, both observers adapted alike)"
+            }
+            Self::Film => "as on film, the mean at middle grey",
+            Self::Television => "as by television, the brightest surface at the peak",
             Self::Brightest => "scaled to the brightest surface",
         }
     }

@@ -5,19 +5,22 @@ use super::subject::Subject;
 use crate::cli::args::RenderStyle;
 use crate::io::image::{Channel, ImageError, Samples, channel_names, exr};
 use crate::raycast::BACK;
-use crate::render::{Mesh, Visibility, item_colour};
+use crate::render::{Mesh, Visibility, item_colour, luminance};
+use crate::view::Viewer;
 use rayon::prelude::*;
 
 const COMMENTS: &str = "Radiosities in W/m^2 per band, linear, not tone-mapped; premultiplied by coverage (A). Layers: \
 smooth (interpolated between vertices), constant (as solved), std_err where there are any; the main layer is the style \
-asked for. patch.number is the patch in the upper left sample of the pixel, 4294967295 where there is none.";
+asked for. luminance.Y is the luminance of the main layer, cd/m^2, by the efficacy said when it was made. patch.number is the patch in the upper left sample of the pixel, 4294967295 where there is none.";
 
 /// The picture of one camera: every band smooth and constant, standard errors, coverage, patch numbers.
 pub(super) fn exr_picture(
     subject: &Subject,
     painter: &Painter,
     visibility: &Visibility,
+    efficacy: f64,
 ) -> Result<Vec<u8>, ImageError> {
+    let in_candela = |y: f64| Viewer::luminance_of(efficacy, y);
     let seen = Seen { visibility, mesh: painter.mesh() };
     let mut channels = Vec::new();
     let mut add = |name: String, samples: Samples| channels.push(Channel { name, samples });
@@ -35,6 +38,13 @@ pub(super) fn exr_picture(
                     add(format!("std_err.{name}"), Samples::F32(seen.constant(&errors)));
                 }
             }
+            let y: Vec<f64> = luminance(&subject.receivers.photometry, b).into_iter().map(in_candela).collect();
+            let seen_so = if painter.is(RenderStyle::Constant) {
+                seen.constant(&y)
+            } else {
+                seen.smooth(&painter.at_vertices(&y))
+            };
+            add("luminance.Y".into(), Samples::F32(seen_so));
         }
         _ => {
             for (c, name) in ["R", "G", "B"].into_iter().enumerate() {

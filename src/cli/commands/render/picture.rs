@@ -106,22 +106,32 @@ impl<'a> Painter<'a> {
 
     /// The picture through one camera, in the natural colours that belong to it.
     pub(super) fn paint(&self, visibility: &Visibility, shown: Option<&Shown>) -> Raster {
-        let constant = || self.flat(visibility, shown);
-        let smooth = || self.shaded(visibility, shown);
-        let panels = match self.style {
-            RenderStyle::Smooth => vec![("Interpolated between vertices", smooth())],
-            RenderStyle::Constant => vec![("As solved: constant per patch", constant())],
-            RenderStyle::Both => {
-                vec![("As solved: constant per patch", constant()), ("Interpolated between vertices", smooth())]
-            }
-            RenderStyle::Items => vec![("Each patch in a colour of its own", paint_items(visibility))],
-        };
+        let panels = self.panels(visibility, shown);
         if !self.caption {
             return side_by_side(&panels.into_iter().map(|(_, raster)| raster).collect::<Vec<_>>());
         }
         let panels = panels.into_iter().map(|(title, raster)| (title.to_string(), raster)).collect();
         let bar = self.quantity.as_ref().map(|q| Bar::of(&q.scale, &q.title, q.factor));
         Sheet { panels, bar, caption: self.words(shown) }.compose()
+    }
+
+    /// The picture without words.
+    pub(super) fn plain(&self, visibility: &Visibility, shown: Option<&Shown>) -> Raster {
+        side_by_side(&self.panels(visibility, shown).into_iter().map(|(_, raster)| raster).collect::<Vec<_>>())
+    }
+
+    /// The pictures of the style, with their titles.
+    fn panels(&self, visibility: &Visibility, shown: Option<&Shown>) -> Vec<(&'static str, Raster)> {
+        let constant = || self.flat(visibility, shown);
+        let smooth = || self.shaded(visibility, shown);
+        match self.style {
+            RenderStyle::Smooth => vec![("Interpolated between vertices", smooth())],
+            RenderStyle::Constant => vec![("As solved: constant per patch", constant())],
+            RenderStyle::Both => {
+                vec![("As solved: constant per patch", constant()), ("Interpolated between vertices", smooth())]
+            }
+            RenderStyle::Items => vec![("Each patch in a colour of its own", paint_items(visibility))],
+        }
     }
 
     /// One colour a cell.

@@ -13,6 +13,7 @@ use crate::view::Viewer;
 use std::path::Path;
 
 /// A scene with what is shown of it.
+#[derive(Clone)]
 pub(super) struct Subject {
     /// The scene at its state.
     pub stage: Stage,
@@ -51,15 +52,15 @@ impl Subject {
         }
         let name = args.solution.as_ref().map_or_else(|| args.scene.clone(), |p| p.display().to_string());
         let (radiosity, yardstick) = if given.is_some() { (given, own) } else { (own, None) };
-        let mut subject = Self { stage, receivers, per_element, radiosity, yardstick, name };
-        if let Some(lamp) = args.lamp {
-            subject.light(lamp.0, args.viewing.efficacy.0)?;
+        let subject = Self { stage, receivers, per_element, radiosity, yardstick, name };
+        match args.lamp.as_slice() {
+            [lamp] => subject.lit(lamp.0, args.viewing.efficacy.0),
+            _ => Ok(subject),
         }
-        Ok(subject)
     }
 
-    /// All light times the factor that gives the brightest lamp this luminance, cd/m^2.
-    fn light(&mut self, luminance: f64, efficacy: f64) -> Result<(), Failure> {
+    /// The same with all light times the factor that gives the brightest lamp this luminance, cd/m^2.
+    pub(super) fn lit(&self, luminance: f64, efficacy: f64) -> Result<Self, Failure> {
         let bands = self.receivers.photometry.bands.len();
         let brightest = (0..self.receivers.areas.len())
             .filter(|i| self.receivers.areas[*i] > 0.0)
@@ -69,10 +70,11 @@ impl Subject {
             return Err(Failure::input("--lamp: nothing in this scene emits light; leave it out"));
         }
         let factor = luminance / Viewer::luminance_of(efficacy, brightest);
-        for b in self.radiosity.iter_mut().chain(&mut self.yardstick) {
+        let mut lit = self.clone();
+        for b in lit.radiosity.iter_mut().chain(&mut lit.yardstick) {
             b.values.iter_mut().chain(b.std_err.iter_mut().flatten()).for_each(|x| *x *= factor);
         }
-        Ok(())
+        Ok(lit)
     }
 }
 
