@@ -193,29 +193,35 @@ mod tests {
         assert_eq!(visible_share(&v, &[0.0, 0.0, 1.0, 0.0], &solution, &[solution.clone()], 0.95), None);
     }
 
-    /// 200 receivers, a third of them off by more than a step, noise that leaves some of them open: the interval holds the
-    /// true share in at least 95 % of 400 runs, and is no wider than the noise makes it.
+    /// 200 receivers against 400 noisy references each way: a third of them off by 1.3 steps and the rest by 0.7, so that
+    /// noise leaves many open; and all of them off by just less than one, so that any that is called visible is a false
+    /// alarm. The interval holds the true share in at least 95 % of the runs.
     #[test]
     fn the_interval_holds_the_share() {
         let (n, runs) = (200, 400);
         let v = viewing(vec![1.0 / n as f64; n]);
         let mut random = Random(11);
         let truth: Vec<f64> = (0..n).map(|i| 0.5 + 3.0 * i as f64 / n as f64).collect();
-        let steps = |i: usize| if i % 3 == 0 { 1.6 } else { 0.4 };
-        let solution: Vec<f64> =
-            (0..n).map(|i| truth[i] * (1.0 + steps(i) * v.viewer.least_visible(truth[i]).unwrap())).collect();
-        let right = (0..n).filter(|i| i % 3 == 0).count() as f64 / n as f64;
-        let (mut missed, mut width) = (0, 0.0);
-        for _ in 0..runs {
-            let rows: Vec<Vec<f64>> =
-                (0..16).map(|_| truth.iter().map(|y| y * (1.0 + 0.004 * random.normal())).collect()).collect();
-            let e = visible_share(&v, &vec![1.0; n], &solution, &rows, 0.95).unwrap().estimate;
-            missed += usize::from(e.low > right + 1e-12 || e.high < right - 1e-12);
-            width += (e.high - e.low) / f64::from(runs);
-        }
-        // 5 % promised: 20 of 400 at most expected, sd 4.4; above 38 with probability 1e-4.
-        assert!(missed <= 38, "{missed}");
-        assert!(width > 0.02 && width < 0.9, "{width}");
+        let mut run = |name: &str, steps: &dyn Fn(usize) -> f64| {
+            let off = |i: usize| truth[i] * (1.0 + steps(i) * v.viewer.least_visible(truth[i]).unwrap());
+            let solution: Vec<f64> = (0..n).map(off).collect();
+            let right = (0..n).filter(|i| steps(*i) > 1.0).count() as f64 / n as f64;
+            let (mut missed, mut width) = (0, 0.0);
+            for _ in 0..runs {
+                let rows: Vec<Vec<f64>> =
+                    (0..16).map(|_| truth.iter().map(|y| y * (1.0 + 0.004 * random.normal())).collect()).collect();
+                let e = visible_share(&v, &vec![1.0; n], &solution, &rows, 0.95).unwrap().estimate;
+                missed += usize::from(e.low > right + 1e-12 || e.high < right - 1e-12);
+                width += (e.high - e.low) / f64::from(runs);
+            }
+            println!("{name}: {missed} of {runs} intervals miss the share; they are {width:.2} wide");
+            // 5 % promised: 20 of 400 at most expected, sd 4.4; above 38 with probability 1e-4.
+            assert!(missed <= 38, "{missed}");
+            // Noise leaves a part of them open: there is something to miss.
+            assert!(width > 0.02, "{width}");
+        };
+        run("a third visible", &|i| if i % 3 == 0 { 1.3 } else { 0.7 });
+        run("none quite visible", &|_| 0.99);
     }
 
     #[test]

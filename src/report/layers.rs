@@ -2,6 +2,7 @@
 
 use super::ReportError;
 use super::artifact::check_shape;
+use super::figures::shown_fields;
 use crate::io::image::{Channel, Samples, channel_names, exr};
 use crate::render::Visibility;
 use crate::solution::Radiosity;
@@ -9,7 +10,7 @@ use crate::study::Record;
 
 const COMMENTS: &str = "Radiosities in W/m^2 per band, linear, not tone-mapped; premultiplied by coverage (A). \
 Layers: reference (also shown as the main layer), std_err of the reference, candidate, difference = candidate - \
-reference; patch.number is the patch in the upper left sample of the pixel, 4294967295 where there is none.";
+reference; where somebody looks, steps and brils: the difference in steps of the display and in brightness; patch.number is the patch in the upper left sample of the pixel, 4294967295 where there is none.";
 
 /// The reference, its standard errors, the candidate and the difference as seen by one camera, per band in f32,
 /// with the coverage and the patch numbers.
@@ -34,6 +35,10 @@ pub fn exr_layers(record: &Record, visibility: &Visibility) -> Result<Vec<u8>, R
         if let Some(e) = errors {
             add("std_err.", &column(e, record.reference.bands, c));
         }
+    }
+    for shown in shown_fields(record).into_iter().filter(|s| ["steps", "brils"].contains(&s.kind)) {
+        let values: Vec<f64> = shown.field.values.iter().map(|v| v.unwrap_or(f64::NAN)).collect();
+        channels.push(Channel { name: format!("{}.Y", shown.kind), samples: resolve(visibility, &values) });
     }
     let whole = vec![1.0; record.stage.patch_count()];
     channels.push(Channel { name: "A".into(), samples: resolve(visibility, &whole) });

@@ -34,7 +34,7 @@ pub use render::{OnOff, RenderArgs, RenderStyle};
 pub use scene::{SceneArgs, SceneCommand};
 pub use setup::SetupCommand;
 pub use solve::SolveArgs;
-pub use suites::{ReceiversArgs, ValidateCommand};
+pub use suites::{DisplaySuiteArgs, ReceiversArgs, ValidateCommand};
 pub use viewing::{LookingArgs, ToneChoice};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};

@@ -19,6 +19,14 @@ pub struct ReceiversArgs {
     pub output: PathBuf,
 }
 
+/// `etalon validate display`
+#[derive(Debug, Args)]
+pub struct DisplaySuiteArgs {
+    /// Writes Stevens' curves here, as figure 4 of the paper shows them: brightness.svg and brightness.csv.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
 /// `etalon validate ...`
 #[derive(Debug, Subcommand)]
 pub enum ValidateCommand {
@@ -26,4 +34,6 @@ pub enum ValidateCommand {
     Cie171(SuiteArgs),
     /// 114 exact form factors: polygons, disks, spheres, obstructed pairs.
     ClosedForms(SuiteArgs),
+    /// Tone reproduction: 40 exact values of the operator of Tumblin and Rushmeier (1993), and Stevens' law.
+    Display(DisplaySuiteArgs),
 }

@@ -1,12 +1,15 @@
 //! `etalon validate`: published test suites.
 
-use crate::cli::args::{SuiteArgs, ValidateCommand};
+use crate::cli::args::{DisplaySuiteArgs, SuiteArgs, ValidateCommand};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
 use crate::estimate::Plan;
+use crate::io::atomic;
 use crate::raycast::KernelKind;
+use crate::report::{brightness_files, save};
 use crate::study::validate::{
-    ABSOLUTE, CIE_LIMIT, FALSE_ALARM, Measured, Outcome, RELATIVE, Route, Row, cie171, closed_forms,
+    ABSOLUTE, CIE_LIMIT, DISPLAY_TOLERANCE, FALSE_ALARM, Measured, Outcome, RELATIVE, Route, Row, cie171, closed_forms,
+    display,
 };
 use serde_json::json;
 
@@ -14,6 +17,7 @@ pub fn run(command: &ValidateCommand, kernel: KernelKind, console: &Console) -> 
     match command {
         ValidateCommand::Cie171(args) => cie(args, kernel, console),
         ValidateCommand::ClosedForms(args) => forms(args, kernel, console),
+        ValidateCommand::Display(args) => tones(args, console),
     }
 }
 
@@ -99,6 +103,33 @@ fn forms(args: &SuiteArgs, kernel: KernelKind, console: &Console) -> Result<u8, 
     });
     console.result(&text, &json);
     Ok(if failed == 0 { exit::DONE } else { exit::FAIL })
+}
+
+fn tones(args: &DisplaySuiteArgs, console: &Console) -> Result<u8, Failure> {
+    args.output.as_deref().map(atomic::check_folder).transpose()?;
+    let suite = display();
+    let failed = suite.rows.iter().filter(|r| !r.passed).count();
+    let head = ["adapted to", "scene", "screen, exact", "ours", "n, exact", "ours"];
+    let mut text = head.map(|h| format!("{h:>16}")).concat() + "\n";
+    for r in &suite.rows {
+        let cells = [r.adapted_to, r.luminance, r.screen[0], r.screen[1], r.value[0], r.value[1]];
+        text += &cells.map(|x| format!("{x:>16.10}")).concat();
+        text += if r.passed { "  ok\n" } else { "  FAILED\n" };
+    }
+    text += &format!(
+        "{} of {} values hold to {DISPLAY_TOLERANCE:.0e} (luminances in cd/m^2, on the screen of 1993)\nthe power law is \
+         Stevens' law within {:.0e}",
+        suite.rows.len() - failed,
+        suite.rows.len(),
+        suite.law
+    );
+    if let Some(folder) = &args.output {
+        save(folder, &brightness_files(&suite.curves)?)?;
+        text += &format!("\nhis curves are in {}", folder.display());
+    }
+    let json = json!({ "suite": "display", "values": suite.rows, "failed": failed, "tolerance": DISPLAY_TOLERANCE, "law": suite.law });
+    console.result(&text, &json);
+    Ok(if failed == 0 && suite.law < DISPLAY_TOLERANCE { exit::DONE } else { exit::FAIL })
 }
 
 /// One line per route, and the verdict.
