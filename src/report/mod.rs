@@ -6,6 +6,7 @@
 mod artifact;
 mod asked;
 pub mod audit;
+mod brightness;
 mod changes;
 pub mod curves;
 mod figures;
@@ -25,6 +26,7 @@ mod thumbnail;
 mod tone;
 
 pub use artifact::{Artifact, Exporter, Extras, Phase, ReportError, save};
+pub use brightness::brightness_files;
 pub use changes::change_lines;
 pub use figures::{ColourBar, Figure, Mark, ViewFigures, figures};
 pub use headline::{Headline, headline, warnings};

@@ -22,15 +22,20 @@ pub(super) fn axis_end(lines: &[MetricLine]) -> Option<f64> {
     let reach =
         |l: &MetricLine| Some(l.estimate?.high.abs().max(l.estimate?.low.abs()).max(l.limit_value.unwrap_or(0.0)));
     let largest = |all: bool| {
-        let kept = lines.iter().filter(|l| all || l.limit_value.is_some());
+        let kept = lines.iter().filter(|l| is_error(l) && (all || l.limit_value.is_some()));
         kept.filter_map(reach).filter(|r| r.is_finite() && *r > 0.0).reduce(f64::max)
     };
     largest(false).or_else(|| largest(true)).map(|r| 1.2 * r)
 }
 
-/// The bar of one metric; `None` where there is no estimate.
+/// True for errors of light, which share an axis; a share of the picture is none.
+fn is_error(line: &MetricLine) -> bool {
+    line.key != "visible"
+}
+
+/// The bar of one metric; `None` where there is no estimate or it is no error of light.
 pub(super) fn bar(line: &MetricLine, end: f64) -> Option<Bar> {
-    let e = line.estimate?;
+    let e = line.estimate.filter(|_| is_error(line))?;
     let signed = line.key == "bias";
     let place = |x: f64| {
         let along = if signed { 0.5 + 0.5 * x / end } else { x / end };
