@@ -4,6 +4,9 @@ use super::{Mesh, Visibility};
 use crate::view::Levels;
 use rayon::prelude::*;
 
+/// Pixels that one thread counts before it adds up.
+const PIXELS_AT_ONCE: usize = 1 << 14;
+
 /// Who is seen, and by how much.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
@@ -14,21 +17,25 @@ pub struct Seen {
 impl Seen {
     /// The cells of a mesh, its patches or its elements, in these pictures.
     pub fn of<'a>(mesh: &Mesh, pictures: impl IntoIterator<Item = &'a Visibility>) -> Self {
-        let (mut counts, mut all) = (vec![0u64; mesh.cell_count()], 0u64);
+        let (n, mut all) = (mesh.cell_count(), 0u64);
+        let mut counts = vec![0u64; n];
         for visibility in pictures {
-            let landed = |pixel: usize| {
-                let samples = visibility.samples(pixel).iter().enumerate();
-                let cell = |(k, patch): (usize, &u32)| {
-                    let point = visibility.point(mesh.stage(), pixel, k)?;
-                    Some(mesh.cell_at(*patch as usize, point))
-                };
-                (visibility.samples(pixel).len(), samples.filter_map(cell).collect::<Vec<usize>>())
+            let count = |mut counts: Vec<u64>, pixel: usize| {
+                for (k, patch) in visibility.samples(pixel).iter().enumerate() {
+                    if let Some(point) = visibility.point(mesh.stage(), pixel, k) {
+                        counts[mesh.cell_at(*patch as usize, point)] += 1;
+                    }
+                }
+                counts
             };
-            let landed: Vec<(usize, Vec<usize>)> = (0..visibility.pixel_count()).into_par_iter().map(landed).collect();
-            for (samples, cells) in landed {
-                all += samples as u64;
-                cells.into_iter().for_each(|c| counts[c] += 1);
-            }
+            // Whole numbers: the sum does not depend on who adds first.
+            let of_picture = (0..visibility.pixel_count())
+                .into_par_iter()
+                .with_min_len(PIXELS_AT_ONCE)
+                .fold(|| vec![0; n], count)
+                .reduce(|| vec![0; n], |a, b| a.iter().zip(&b).map(|(a, b)| a + b).collect());
+            counts.iter_mut().zip(of_picture).for_each(|(sum, n)| *sum += n);
+            all += (visibility.pixel_count() * visibility.samples(0).len()) as u64;
         }
         Self { shares: counts.into_iter().map(|n| n as f64 / all.max(1) as f64).collect() }
     }
