@@ -123,6 +123,31 @@ fn print(plate: &Plate, visibility: &Visibility, mesh: &Mesh) -> Figure {
 }
 
 fn plates(record: &Record, mesh: &Mesh) -> Vec<Plate> {
+    let exposure = exposure(record);
+    let mut all = natural(record, &exposure);
+    all.extend(shown_fields(record).into_iter().map(false_colour));
+    all.extend(smooth(record, &exposure, mesh));
+    all
+}
+
+/// One number per patch that is shown in false colour, with its words and its scale.
+pub(super) struct ShownField {
+    /// `difference`, `relative`, `std_err` or `z`.
+    pub kind: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What is shown, without what the scale leaves out.
+    pub what: String,
+    /// The numbers.
+    pub field: Field,
+    /// Their colours.
+    pub scale: Scale,
+    /// Their unit.
+    pub unit: Unit,
+}
+
+/// What is shown in false colour, the errors of the reference only where there are any.
+pub(super) fn shown_fields(record: &Record) -> Vec<ShownField> {
     let (stage, photometry) = (&record.stage, &record.stage.photometry);
     let areas = stage.areas();
     let reference = luminance(photometry, &record.reference);
@@ -132,20 +157,18 @@ fn plates(record: &Record, mesh: &Mesh) -> Vec<Plate> {
     let noise = luminance_std_err(photometry, &record.reference);
     let z = tested(record)
         .unwrap_or_else(|| in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution)));
-    let exposure = exposure(record, &reference, &areas);
-    let mut all = natural(record, &exposure);
+    let shown = |kind, title, what: String, field, scale, unit| ShownField { kind, title, what, field, scale, unit };
     let scale = Scale::symmetric(&wrong, &areas, 0.0);
-    all.push(false_colour("difference", "Signed difference", WRONG, &wrong, scale, WATTS));
+    let mut all = vec![shown("difference", "Signed difference", WRONG.into(), wrong, scale, WATTS)];
     let scale = Scale::symmetric(&relative, &areas, 0.0);
-    all.push(false_colour("relative", "Relative difference", RELATIVE, &relative, scale, PERCENT));
+    all.push(shown("relative", "Relative difference", RELATIVE.into(), relative, scale, PERCENT));
     if !noise.is_blank() {
         let scale = Scale::from_zero(&noise, &areas);
-        all.push(false_colour("std_err", "Standard error of the reference", NOISE, &noise, scale, WATTS));
+        all.push(shown("std_err", "Standard error of the reference", NOISE.into(), noise, scale, WATTS));
         let scale = Scale::symmetric(&z, &areas, LEAST_Z);
         let what = format!("{IN_ERRORS}{}", beyond(record));
-        all.push(false_colour("z", "Difference in standard errors", &what, &z, scale, ERRORS));
+        all.push(shown("z", "Difference in standard errors", what, z, scale, ERRORS));
     }
-    all.extend(smooth(record, &exposure, mesh));
     all
 }
 
@@ -185,19 +208,24 @@ const IN_ERRORS: &str =
     "Differences against the noise: what stays within two or three is no evidence of an error in the solution.";
 
 /// One exposure for all pictures in natural colours.
-fn exposure(record: &Record, luminances: &[f64], areas: &[f64]) -> Exposure {
+pub(super) fn exposure(record: &Record) -> Exposure {
     let stage = &record.stage;
     let is_emitter: Vec<bool> = (0..stage.patch_count()).map(|i| stage.emission(i).iter().any(|e| *e > 0.0)).collect();
-    Exposure::fit(&stage.photometry, luminances, areas, &is_emitter)
+    Exposure::fit(&stage.photometry, &luminance(&stage.photometry, &record.reference), &stage.areas(), &is_emitter)
+}
+
+/// What an exposure does, in a sentence.
+pub(super) fn exposed(exposure: &Exposure) -> String {
+    format!(
+        "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
+         the reflecting area stays below); lamps may burn out.",
+        significant(exposure.white_luminance, 3)
+    )
 }
 
 /// Reference and solution as a camera would show them, one colour a patch.
 fn natural(record: &Record, exposure: &Exposure) -> Vec<Plate> {
-    let shown = format!(
-        "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
-         the reflecting area stays below); lamps may burn out.",
-        significant(exposure.white_luminance, 3)
-    );
+    let shown = exposed(exposure);
     let palette = |r: &Radiosity| Fill::Flat((0..r.len()).map(|i| Some(exposure.display(r.of(i)))).collect());
     let plate = |kind, title, caption, radiosity| Plate { kind, title, caption, fill: palette(radiosity), bar: None };
     vec![
@@ -222,7 +250,8 @@ fn smooth(record: &Record, exposure: &Exposure, mesh: &Mesh) -> Vec<Plate> {
     ]
 }
 
-fn false_colour(kind: &'static str, title: &'static str, what: &str, field: &Field, scale: Scale, unit: Unit) -> Plate {
+fn false_colour(shown: ShownField) -> Plate {
+    let ShownField { kind, title, what, field, scale, unit } = shown;
     let beyond = beyond_range(&scale);
     let bar = colour_bar(&scale, unit);
     let palette = field.values.iter().map(|v| v.map(|v| scale.colour(v))).collect();

@@ -17,6 +17,7 @@ mod junit;
 mod layers;
 mod lines;
 mod markdown;
+mod scene3d;
 mod split;
 #[cfg(test)]
 mod testing;

@@ -13,7 +13,7 @@ use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, one_line, te
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
 use crate::study::{
-    self, Against, Cause, CauseOptions, Contributions, Look, Question, Record, Rows, Session, break_down, causes, judge,
+    self, Against, Before, Cause, CauseOptions, Contributions, Look, Question, Record, Rows, Session, break_down, causes, judge,
 };
 use std::io::IsTerminal;
 use std::path::Path;
@@ -167,6 +167,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         reference: patch_means(&bench.against, &bench.stage, bench.per_element),
         solution: if bench.per_element { by_patch(&bench.solution, &bench.stage) } else { bench.solution.clone() },
         stage: bench.stage.clone(),
+        before: shown_before(args.before.as_deref(), &bench),
     };
     watch.lap("judging");
     if let Some(path) = &args.markdown {
@@ -180,6 +181,12 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         write_report(folder, &record, session.as_ref(), watch)?;
     }
     Ok(record)
+}
+
+/// What stood there before the edit, where a reference tells.
+fn shown_before(path: Option<&Path>, bench: &Bench) -> Option<Before> {
+    let Some(Against::Reference(r)) = &bench.before else { return None };
+    Some(Before { name: path?.display().to_string(), reference: r.patches.mean(), stage: r.stage.clone() })
 }
 
 /// What the reader has to know beside the numbers.
