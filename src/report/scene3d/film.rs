@@ -2,13 +2,13 @@
 
 use super::layers::{Colouring, Layer, coloured, known};
 use super::encode::numbers;
-use super::{SceneView, has_geometry};
+use super::{Parts, SceneView, has_geometry};
+use crate::report::ReportError;
 use crate::render::{Exposure, Field, Scale, difference, luminance};
 use crate::report::figures::WATTS;
 use crate::report::format::count;
 use crate::scene::Stage;
 use crate::solution::{Radiosity, Series, Snapshot};
-use crate::view::Camera;
 use serde::Serialize;
 
 /// At most this many steps of a series.
@@ -34,17 +34,22 @@ struct Step {
 
 /// A state with its reference.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::report) struct Filmed<'a> {
+pub struct Filmed<'a> {
     /// The state.
     pub stage: &'a Stage,
     /// Mean of the reference, per patch.
     pub reference: &'a Radiosity,
-    /// Cameras to look through; where there are none, those of the stage are taken.
-    pub cameras: &'a [Camera],
 }
 
 /// Every series on its way to the reference of one state; `None` without geometry or without a step.
-pub(in crate::report) fn film(now: Filmed, series: &[Series]) -> Option<SceneView> {
+///
+/// # Errors
+/// [`ReportError::Json`], which no series provokes.
+pub fn film(now: Filmed, series: &[Series]) -> Result<Option<Parts>, ReportError> {
+    Ok(view(now, series).map(|v| Parts::of(&v)).transpose()?)
+}
+
+fn view(now: Filmed, series: &[Series]) -> Option<SceneView> {
     let (stage, photometry) = (now.stage, &now.stage.photometry);
     let of_state = |s: &Series| s.snapshots.iter().any(|s| s.edit == stage.state);
     let shown: Vec<&Series> = series.iter().filter(|s| of_state(s)).collect();
@@ -54,8 +59,7 @@ pub(in crate::report) fn film(now: Filmed, series: &[Series]) -> Option<SceneVie
     let areas = stage.areas();
     let bright = luminance(photometry, now.reference);
     let scale = Scale::from_zero(&known(bright.clone()), &areas);
-    let cameras = if now.cameras.is_empty() { &stage.cameras } else { now.cameras };
-    let mut view = SceneView::new(stage, cameras);
+    let mut view = SceneView::new(stage, &stage.cameras);
     view.layers.push(
         Layer::new("reference", "Luminance of the reference", "In false colour.", &known(bright.clone()), &scale, WATTS)
             .in_range_of("light"),
@@ -193,15 +197,15 @@ mod tests {
     fn a_film_shows_the_series_of_its_state_alone() {
         let stage = room();
         let reference = direct_light(&stage, false);
-        let now = Filmed { stage: &stage, reference: &reference, cameras: &[] };
+        let now = Filmed { stage: &stage, reference: &reference };
         let mut other = series(&stage, &[5]);
         other.snapshots[0].edit = 1;
-        let view = film(now, &[series(&stage, &[0, 10, 20]), other.clone()]).expect("a film");
+        let view = view(now, &[series(&stage, &[0, 10, 20]), other.clone()]).expect("a film");
         let keys: Vec<&str> = view.layers.iter().map(|l| l.key.as_str()).collect();
         assert_eq!(keys, ["reference", "film-1", "film-1-difference"]);
         let labels: Vec<&str> = view.films[0].steps.iter().map(|s| s.label.as_str()).collect();
         assert_eq!(labels, ["no shots, no rays", "10 shots", "20 shots"]);
         assert_eq!(view.films[0].note, "All 3 snapshots of the series.");
-        assert!(film(now, &[other]).is_none());
+        assert!(super::view(now, &[other]).is_none());
     }
 }

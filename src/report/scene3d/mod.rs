@@ -9,8 +9,11 @@ mod geometry;
 mod layers;
 mod page;
 
-pub(in crate::report) use film::{Filmed, film};
-pub(in crate::report) use page::{Parts, TEMPLATES};
+pub use film::{Filmed, film};
+pub use page::Parts;
+#[cfg(test)]
+pub(in crate::report) use page::LIBRARY;
+pub(in crate::report) use page::TEMPLATES;
 
 use super::asked::Level;
 use crate::scene::Stage;
@@ -71,6 +74,10 @@ impl SceneView {
             start: "difference".into(),
             worst: Vec::new(),
         }
+    }
+
+    fn is_film(&self) -> bool {
+        !self.films.is_empty()
     }
 }
 

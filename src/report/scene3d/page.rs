@@ -3,9 +3,13 @@
 use super::SceneView;
 use serde::Serialize;
 
-/// Markup and style, for pages to include.
-pub(in crate::report) const TEMPLATES: [(&str, &str); 2] =
-    [("viewer.html", include_str!("page/viewer.html.j2")), ("viewer.css", include_str!("page/viewer.css"))];
+/// Markup and style, for pages to include; all of them speak of `viewer`.
+pub(in crate::report) const TEMPLATES: [(&str, &str); 4] = [
+    ("viewer.html", include_str!("page/viewer.html.j2")),
+    ("viewer.css", include_str!("page/viewer.css")),
+    ("viewer_licence.html", include_str!("page/viewer_licence.html.j2")),
+    ("viewer_script.html", include_str!("page/viewer_script.html.j2")),
+];
 /// The library that draws.
 pub(in crate::report) const LIBRARY: &str = include_str!("../vendor/three.min.js");
 const LICENCES: &str = include_str!("../vendor/LICENSES.txt");
@@ -22,9 +26,17 @@ const PROGRAM: &str = concat!(
     include_str!("page/viewer.js"),
 );
 
-/// Ready text; nothing of it may be escaped again.
-#[derive(Debug, Serialize)]
-pub(in crate::report) struct Parts {
+const OF_A_RECORD: &str = "One flat colour a patch: its own value, nothing lit or smoothed. Click a patch for its \
+                           numbers, a row of the tables below to fly to its worst patch. What looks away is left out, so \
+                           that one sees into a room from outside.";
+const OF_A_FILM: &str = "Each series on its way to the reference, one flat colour a patch: nothing is lit or smoothed. Play the \
+                         steps or pull the slider; click a patch for its numbers. What looks away is left out, so that one \
+                         sees into a room from outside.";
+
+/// A view as a page holds it: ready text, nothing of which may be escaped again.
+#[derive(Debug, Clone, Serialize)]
+pub struct Parts {
+    lead: &'static str,
     data: String,
     library: &'static str,
     program: &'static str,
@@ -39,7 +51,8 @@ impl Parts {
     pub(in crate::report) fn of(view: &SceneView) -> Result<Self, serde_json::Error> {
         // In a script element `<` alone could end it or begin a comment.
         let data = serde_json::to_string(view)?.replace('<', "\\u003c");
-        Ok(Self { data, library: LIBRARY, program: PROGRAM, licence: licence_of("three.js") })
+        let lead = if view.is_film() { OF_A_FILM } else { OF_A_RECORD };
+        Ok(Self { lead, data, library: LIBRARY, program: PROGRAM, licence: licence_of("three.js") })
     }
 }
 

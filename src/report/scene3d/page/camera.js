@@ -72,11 +72,12 @@ class Eye {
     const direction = to.clone().sub(from);
     this.fly({ target: to, distance: direction.length(), ...this.heading(direction), fov, aspect: size[0] / size[1] });
   }
-  // All of the scene, from outside and a little above.
-  whole() {
-    const direction = this.east.clone().multiplyScalar(-0.8).addScaledVector(this.north, 1.4).addScaledVector(this.up, -0.6);
-    const distance = 1.05 * this.sphere.radius / Math.sin(20 * Math.PI / 180);
-    this.fly({ target: this.sphere.center.clone(), distance, ...this.heading(direction), fov: 40, aspect: 1 });
+  // All of the scene, from outside and above, to the side of where the first camera stands.
+  whole(camera) {
+    if (camera) this.upright(V(...camera.up));
+    const ahead = camera ? V(...camera.target).sub(V(...camera.eye)) : V(-1, 1, 0);
+    const yaw = this.heading(ahead).yaw + 0.5;
+    this.fly({ target: this.sphere.center.clone(), distance: 0.95 * this.sphere.radius / Math.sin(Math.PI / 9), yaw, pitch: -0.45, fov: 40, aspect: 1 });
   }
   // Straight at a patch, from its front, no farther than there is room.
   at(centre, normal, size, room) {

@@ -102,7 +102,7 @@ function start() {
     $("camera").value = "0";
     look(0);
   }
-  function look(k) { if (k < data.cameras.length) eye.through(data.cameras[k]); else eye.whole(); }
+  function look(k) { if (k < data.cameras.length) eye.through(data.cameras[k]); else eye.whole(data.cameras[0]); }
   function help() {
     $("keys").hidden = !$("keys").hidden;
     $("help").ariaExpanded = String(!$("keys").hidden);
@@ -153,6 +153,7 @@ function start() {
   // For tests and for scripts in the console: what is shown, and the same actions that the mouse has.
   window.etalonViewer = {
     ready: true,
+    readyAfter: performance.now(),
     select: fly,
     get selected() { return now.patch; },
     camera: () => eye.tell(),
@@ -166,8 +167,9 @@ function start() {
     get layer() { return now.layer.key; },
     get layers() { return layers.map(l => l.key); },
     setLayer: key => show(layerOf(key)),
+    get worst() { return [...data.worst]; },
+    turn: angle => { eye.turn(angle, 0); frame(performance.now()); },
     split, step,
-    draw: () => frame(performance.now()),
   };
 }
 
