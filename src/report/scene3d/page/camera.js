@@ -77,7 +77,7 @@ class Eye {
     if (camera) this.upright(V(...camera.up));
     const ahead = camera ? V(...camera.target).sub(V(...camera.eye)) : V(-1, 1, 0);
     const yaw = this.heading(ahead).yaw + 0.5;
-    this.fly({ target: this.sphere.center.clone(), distance: 0.95 * this.sphere.radius / Math.sin(Math.PI / 9), yaw, pitch: -0.45, fov: 40, aspect: 1 });
+    this.fly({ target: this.sphere.center.clone(), distance: 1.12 * this.sphere.radius / Math.sin(Math.PI / 9), yaw, pitch: -0.45, fov: 40, aspect: 1 });
   }
   // Straight at a patch, from its front, no farther than there is room.
   at(centre, normal, size, room) {

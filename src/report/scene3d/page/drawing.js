@@ -4,8 +4,8 @@ const geometry = new Geometry(data.geometry);
 const geometryBefore = data.before && new Geometry(data.before, data.geometry.origin);
 
 class Drawing {
-  constructor(canvas) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+  constructor(canvas, antialias) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias, alpha: true, preserveDrawingBuffer: true });
     this.renderer.autoClear = false;
     this.renderer.setClearColor(0, 0);
     this.scene = new THREE.Scene();
@@ -103,10 +103,12 @@ class Drawing {
     }
     return shownState;
   }
-  resize(width, height) {
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
+  // Size in CSS pixels; a coarse picture has a quarter of the pixels.
+  resize(width, height, coarse) {
+    this.ratio = Math.min(2, devicePixelRatio || 1);
+    this.renderer.setPixelRatio(this.ratio * (coarse ? 0.5 : 1));
     this.renderer.setSize(width, height, false);
-    Object.assign(this, { width, height });
+    Object.assign(this, { width, height, coarse });
   }
   // One layer, or two with a divider at this share of the width.
   draw(shownLayers, share, camera, patch) {
@@ -126,7 +128,7 @@ class Drawing {
   }
   // Number of the patch at a point of the canvas; null where there is none.
   pick(layer, x, y, camera) {
-    const ratio = this.renderer.getPixelRatio();
+    const ratio = this.ratio;
     const hidden = [...this.mark, ...this.states.map(s => s.lines)].filter(Boolean);
     this.use(layer);
     for (const part of hidden) part.visible = false;

@@ -19,7 +19,7 @@ class Panel {
   show(patch, onShow) {
     for (const row of document.querySelectorAll("tr.flies")) row.classList.toggle("shown", patch !== null && Number(row.dataset.patch) === patch);
     const turn = element("div", "viewer-turn");
-    if (data.worst.length) turn.append(this.button("previous of the worst", () => this.next(-1)), this.button("next", () => this.next(1)));
+    if (data.worst.length) turn.append(this.button("next of the worst", () => this.next(1)), this.button("previous", () => this.next(-1)));
     if (patch === null) {
       this.box.replaceChildren(element("p", "", "Click a patch for its numbers."), turn);
       return;

@@ -1,19 +1,41 @@
 // The view as a whole: what is shown, from where, and what the page does with it.
-function start() {
+const SLOW = 70;
+
+function start(gl) {
   const [stage, canvas] = [$("stage"), $("canvas")];
-  const drawing = new Drawing(canvas);
+  const drawing = new Drawing(canvas, !isSoftware(gl));
   const now = { layer: layerOf(data.start) ?? layers[0], other: null, share: 0.5, patch: null, former: null };
   let waiting = 0;
   let timer = 0;
   const sides = () => (now.other ? [now.layer, now.other] : [now.layer]);
+  // Where a frame comes long after it was asked for, motion is shown coarse, and what stands still is drawn again in full.
+  let [asked, settle] = [Infinity, 0];
+  const finish = () => {
+    clearTimeout(settle);
+    drawing.resize(drawing.width, drawing.height, false);
+    asked = Infinity;
+    waiting ||= requestAnimationFrame(frame);
+  };
+  const pace = () => {
+    const slow = performance.now() - asked > SLOW;
+    asked = Infinity;
+    clearTimeout(settle);
+    if (slow && !drawing.coarse) drawing.resize(drawing.width, drawing.height, true);
+    if (drawing.coarse) settle = setTimeout(finish, 250);
+  };
   const frame = time => {
     waiting = 0;
+    pace();
     const flying = eye.step(time);
     eye.apply(drawing.width, drawing.height);
     drawing.draw(sides(), now.share, eye.camera, now.patch);
     if (flying) redraw();
   };
-  const redraw = () => { waiting ||= requestAnimationFrame(frame); };
+  const redraw = () => {
+    if (waiting) return;
+    asked = performance.now();
+    waiting = requestAnimationFrame(frame);
+  };
   const eye = new Eye(geometry.origin, geometry.bounds(), redraw);
   const panel = new Panel($("panel"), { next: by => next(by), leave: () => select(null) });
   const scales = [$("scale-a"), $("scale-b")].map(box => new ScaleBox(box, () => { refreshBars(); redraw(); }));
@@ -145,7 +167,7 @@ function start() {
     }
   };
   new ResizeObserver(fill).observe(stage);
-  addEventListener("beforeprint", fill);
+  addEventListener("beforeprint", () => { finish(); fill(); frame(performance.now()); });
   look(0);
   refresh();
   fill();
@@ -169,9 +191,16 @@ function start() {
     setLayer: key => show(layerOf(key)),
     get worst() { return [...data.worst]; },
     turn: angle => { eye.turn(angle, 0); frame(performance.now()); },
+    get coarse() { return drawing.coarse; },
     split, step,
   };
 }
 
-const hasWebGl = !!document.createElement("canvas").getContext("webgl2");
-if (hasWebGl) start(); else $("missing").hidden = false;
+// A processor that draws for want of a graphics card has no time for smooth edges.
+function isSoftware(gl) {
+  const more = gl.getExtension("WEBGL_debug_renderer_info");
+  return !!more && /swiftshader|llvmpipe|software/i.test(gl.getParameter(more.UNMASKED_RENDERER_WEBGL));
+}
+
+const probe = document.createElement("canvas").getContext("webgl2");
+if (probe) start(probe); else $("missing").hidden = false;
