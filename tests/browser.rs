@@ -85,7 +85,8 @@ fn numbers(b: &Browser, expression: &str) -> Vec<f64> {
 
 /// Left, top, width, height of the canvas in the window.
 fn canvas(b: &Browser) -> [f64; 4] {
-    let code = "(r => [r.left, r.top, r.width, r.height])(document.getElementById('viewer-canvas').getBoundingClientRect())";
+    let code =
+        "(r => [r.left, r.top, r.width, r.height])(document.getElementById('viewer-canvas').getBoundingClientRect())";
     numbers(b, code).try_into().expect("four numbers")
 }
 
@@ -134,7 +135,9 @@ fn seen(record: &Record) -> Vec<(usize, DVec3)> {
     let in_sight = |(i, p): &(usize, DVec3)| {
         let others = stage.patches.iter().enumerate().filter(|(k, patch)| k != i && patch.is_present());
         (eye - *p).dot(stage.patches[*i].normal) > 0.0
-            && others.flat_map(|(_, o)| o.region.pieces.iter().map(|c| (c, o.normal))).all(|(c, n)| !hides(c, n, eye, *p))
+            && others
+                .flat_map(|(_, o)| o.region.pieces.iter().map(|c| (c, o.normal)))
+                .all(|(c, n)| !hides(c, n, eye, *p))
     };
     (0..stage.patch_count()).filter_map(middle).filter(in_sight).collect()
 }
@@ -209,7 +212,8 @@ fn rows_of_the_tables_fly_to_their_patch() {
     assert_eq!(b.value("etalonViewer.selected"), json!(worst[1]));
     assert_ne!(b.value("etalonViewer.camera().eye"), before);
     // It looks straight at the middle of the patch, from its front.
-    let [eye, target] = ["eye", "target"].map(|v| DVec3::from_slice(&numbers(&b, &format!("etalonViewer.camera().{v}"))));
+    let [eye, target] =
+        ["eye", "target"].map(|v| DVec3::from_slice(&numbers(&b, &format!("etalonViewer.camera().{v}"))));
     let patch = &record.stage.patches[worst[1]];
     assert!((target - patch.region.centroid().expect("a middle")).length() < 1e-5);
     assert!((eye - target).normalize().dot(patch.normal) > 1.0 - 1e-6);
@@ -310,7 +314,8 @@ fn layers_ranges_and_the_divider_change_what_is_seen() {
         b.run("document.getElementById('viewer-divider').focus()");
         b.keys(if share > 0.5 { "\u{e010}" } else { "\u{e011}" });
         b.settle();
-        let hit = |k: i32| b.value(&format!("etalonViewer.pick({}, {})", (0.35 + 0.03 * f64::from(k)) * width, 0.6 * height));
+        let hit =
+            |k: i32| b.value(&format!("etalonViewer.pick({}, {})", (0.35 + 0.03 * f64::from(k)) * width, 0.6 * height));
         (0..10).filter_map(|k| hit(k).as_u64()).any(|n| gone.contains(&(n as usize)))
     };
     assert!(picked(1.0), "the block stands before the edit");
@@ -342,7 +347,10 @@ fn whatever_things_are_called_stays_text() {
     let Some(b) = opened(&shop.page()) else { return };
     assert!(!b.asks());
     assert_eq!(b.value("document.querySelector('h1').textContent"), json!(ATTACK));
-    assert_eq!(b.value("document.querySelectorAll('main script, .viewer script, h1 b, .viewer-panel b').length"), json!(0));
+    assert_eq!(
+        b.value("document.querySelectorAll('main script, .viewer script, h1 b, .viewer-panel b').length"),
+        json!(0)
+    );
     let camera = b.value("document.getElementById('viewer-camera').options[0].textContent");
     assert_eq!(camera, json!(format!("camera {ATTACK}")));
     // Patch 0 belongs to the floor, of the white material.

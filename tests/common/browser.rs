@@ -105,9 +105,7 @@ impl Browser {
 
     /// Presses the mouse at a point of the window, moves to another, lets go: a click where both are the same.
     pub fn drag(&self, from: [f64; 2], to: [f64; 2]) {
-        let at = |[x, y]: [f64; 2]| {
-            json!({ "type": "pointerMove", "duration": 0, "x": x.round() as i64, "y": y.round() as i64 })
-        };
+        let at = |[x, y]: [f64; 2]| json!({ "type": "pointerMove", "duration": 0, "x": x.round() as i64, "y": y.round() as i64 });
         let button = |what: &str| json!({ "type": what, "button": 0 });
         let moves = json!([at(from), button("pointerDown"), at(to), button("pointerUp")]);
         self.tell("actions", json!({ "actions": [{ "type": "pointer", "id": "mouse", "actions": moves }] }));

@@ -13,7 +13,8 @@ use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, one_line, te
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
 use crate::study::{
-    self, Against, Before, Cause, CauseOptions, Contributions, Look, Question, Record, Rows, Session, break_down, causes, judge,
+    self, Against, Before, Cause, CauseOptions, Contributions, Look, Question, Record, Rows, Session, break_down,
+    causes, judge,
 };
 use std::io::IsTerminal;
 use std::path::Path;

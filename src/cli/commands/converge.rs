@@ -10,7 +10,8 @@ use crate::methods::MethodError;
 use crate::reference::Options;
 use crate::render::views;
 use crate::report::curves::{
-    CURVES_PAGE, CurvesReport, Film, Filmed, Pictures, Shown, convergence_files, convergence_json, convergence_text, film, pictures,
+    CURVES_PAGE, CurvesReport, Film, Filmed, Pictures, Shown, convergence_files, convergence_json, convergence_text,
+    film, pictures,
 };
 use crate::report::{Phase, save};
 use crate::scene::Stage;

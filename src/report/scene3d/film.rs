@@ -1,10 +1,10 @@
 //! The steps of a series as a film.
 
-use super::layers::{Colouring, Layer, coloured, known};
 use super::encode::numbers;
+use super::layers::{Colouring, Layer, coloured, known};
 use super::{Parts, SceneView, has_geometry};
-use crate::report::ReportError;
 use crate::render::{Exposure, Field, Scale, difference, luminance};
+use crate::report::ReportError;
 use crate::report::figures::WATTS;
 use crate::report::format::count;
 use crate::scene::Stage;
@@ -61,8 +61,15 @@ fn view(now: Filmed, series: &[Series]) -> Option<SceneView> {
     let scale = Scale::from_zero(&known(bright.clone()), &areas);
     let mut view = SceneView::new(stage, &stage.cameras);
     view.layers.push(
-        Layer::new("reference", "Luminance of the reference", "In false colour.", &known(bright.clone()), &scale, WATTS)
-            .in_range_of("light"),
+        Layer::new(
+            "reference",
+            "Luminance of the reference",
+            "In false colour.",
+            &known(bright.clone()),
+            &scale,
+            WATTS,
+        )
+        .in_range_of("light"),
     );
     view.colourings.push(reference_colours(stage, now.reference, &bright, &areas));
     let most = steps_that_fit(stage.patch_count(), shown.len());
@@ -84,7 +91,9 @@ fn reel(series: &Series, edit: usize, all: usize, kept: &[&Snapshot], luminances
     };
     let note = match kept.len() == all {
         true => format!("All {} snapshots of the series.", count(all)),
-        false => format!("{} of {} snapshots, spread evenly over the logarithm of the cost.", count(kept.len()), count(all)),
+        false => {
+            format!("{} of {} snapshots, spread evenly over the logarithm of the cost.", count(kept.len()), count(all))
+        }
     };
     Film { title: series.name.clone(), note, steps: kept.iter().zip(luminances).map(step).collect() }
 }
@@ -93,16 +102,16 @@ fn reel(series: &Series, edit: usize, all: usize, kept: &[&Snapshot], luminances
 fn layers_of(film: usize, name: &str, light: &Scale, wrong: &Scale) -> [Layer; 2] {
     let none = Field { values: Vec::new() };
     let key = format!("film-{}", film + 1);
-    let told = "Step by step; in the colours of the reference.";
-    let light = Layer::new(&key, &format!("{name}: luminance"), told, &none, light, WATTS).in_range_of("light");
+    let light = Layer::new(&key, &format!("{name}: luminance"), "", &none, light, WATTS).in_range_of("light");
     let told = "Solution minus reference, step by step: red where it is too bright, blue where it is too dark. The range \
                 is that of the middle step.";
     let title = format!("{name}: difference from the reference");
-    let wrong = Layer::new(&format!("{key}-difference"), &title, told, &none, wrong, WATTS);
-    let note = told.to_string();
+    let wrong = Layer::new(&format!("{key}-difference"), &title, "", &none, wrong, WATTS);
+    // What lies beyond the range differs from step to step: the notes do not say.
+    let note = "Step by step; in the colours of the reference.".to_string();
     [
-        Layer { film: Some(film), ..light },
-        Layer { film: Some(film), minus: Some("reference".into()), note, ..wrong },
+        Layer { film: Some(film), note, ..light },
+        Layer { film: Some(film), minus: Some("reference".into()), note: told.into(), ..wrong },
     ]
 }
 
@@ -129,7 +138,13 @@ fn cost(series: &Series, edit: usize, s: &Snapshot, number: usize) -> f64 {
     let before = series.snapshots.iter().rfind(|s| s.edit < edit);
     let since = |of: fn(&Snapshot) -> u64| (of(s) - before.map_or(0, of)) as f64;
     let (shots, rays) = (since(|s| s.shots), since(|s| s.rays));
-    if shots > 0.0 || s.shots > 0 { shots } else if s.rays > 0 { rays } else { number as f64 }
+    if shots > 0.0 || s.shots > 0 {
+        shots
+    } else if s.rays > 0 {
+        rays
+    } else {
+        number as f64
+    }
 }
 
 /// How many snapshots a state has, and those that are shown: first and last, the others near even steps of log cost.
@@ -169,7 +184,8 @@ mod tests {
 
     fn series(stage: &Stage, shots: &[u64]) -> Series {
         let radiosity = direct_light(stage, true);
-        let one = |shots: &u64| Snapshot { edit: 0, shots: *shots, rays: 0, seconds: 0.0, radiosity: radiosity.clone() };
+        let one =
+            |shots: &u64| Snapshot { edit: 0, shots: *shots, rays: 0, seconds: 0.0, radiosity: radiosity.clone() };
         Series { name: "progressive".into(), snapshots: shots.iter().map(one).collect() }
     }
 

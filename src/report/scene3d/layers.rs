@@ -108,7 +108,8 @@ pub(super) fn layers(record: &Record, before: Option<&Before>) -> Vec<Layer> {
     let reference = known(luminance(photometry, &record.reference));
     let solution = known(luminance(photometry, &record.solution));
     let scale = Scale::from_zero(&reference, &record.stage.areas());
-    let bright = |key, title, note, field: &Field| Layer::new(key, title, note, field, &scale, WATTS).in_range_of("light");
+    let bright =
+        |key, title, note, field: &Field| Layer::new(key, title, note, field, &scale, WATTS).in_range_of("light");
     let mut all = vec![
         bright("reference", "Luminance of the reference", "In false colour.", &reference),
         bright("candidate", "Luminance of the solution", "In the colours of the reference.", &solution),

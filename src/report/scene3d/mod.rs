@@ -10,9 +10,9 @@ mod layers;
 mod page;
 
 pub use film::{Filmed, film};
-pub use page::Parts;
 #[cfg(test)]
 pub(in crate::report) use page::LIBRARY;
+pub use page::Parts;
 pub(in crate::report) use page::TEMPLATES;
 
 use super::asked::Level;
