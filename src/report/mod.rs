@@ -18,6 +18,7 @@ mod junit;
 mod layers;
 mod lines;
 mod markdown;
+mod scene3d;
 mod split;
 #[cfg(test)]
 mod testing;

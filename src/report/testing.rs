@@ -46,6 +46,7 @@ pub(crate) fn record() -> Record {
         breakdown: Some(breakdown(&stage, &reference, &solution)),
         contributions: vec![contributions()],
         stage,
+        before: None,
         reference,
         solution,
         solution_name: "point-lamps".into(),

@@ -28,7 +28,7 @@ pub use kept::KeptWork;
 pub use looks::{Decided, Look, Seen, confidence_of_look, until_decided};
 pub use matrix_compare::{Explanation, MatrixRun, Witness, compare_matrix};
 pub use receivers::at_receivers;
-pub use record::{Part, Record, Setting};
+pub use record::{Before, Part, Record, Setting};
 pub use residual::{ResidualRequest, ResidualRun, residual};
 pub use reuse::{falls_short, reference_key};
 pub use run::{SolveOutcome, SolveRequest, continuous_reference, reference, reference_on, solve};

@@ -50,6 +50,20 @@ pub struct Record {
     pub solution: Radiosity,
     /// Scene at the judged state.
     pub stage: Stage,
+    /// The scene before an edit, where that was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before: Option<Before>,
+}
+
+/// What stood there before an edit, and its light.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Before {
+    /// Where it comes from: a reference by its path.
+    pub name: String,
+    /// Mean of its reference, per patch.
+    pub reference: Radiosity,
+    /// Scene at that state.
+    pub stage: Stage,
 }
 
 /// Whose setting it is.

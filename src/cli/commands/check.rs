@@ -13,7 +13,8 @@ use crate::report::{Exporter, Extras, JUnit, Markdown, json_object, one_line, te
 use crate::scene::Stage;
 use crate::solution::{Radiosity, TruthLevel};
 use crate::study::{
-    self, Against, Cause, CauseOptions, Contributions, Look, Question, Record, Rows, Session, break_down, causes, judge,
+    self, Against, Before, Cause, CauseOptions, Contributions, Look, Question, Record, Rows, Session, break_down,
+    causes, judge,
 };
 use std::io::IsTerminal;
 use std::path::Path;
@@ -175,6 +176,7 @@ fn run(asked: &Asked, console: &Console) -> Result<Record, Failure> {
         reference: patch_means(&bench.against, &bench.stage, bench.per_element),
         solution: if bench.per_element { by_patch(&bench.solution, &bench.stage) } else { bench.solution.clone() },
         stage: bench.stage.clone(),
+        before: shown_before(args.before.as_deref(), &bench),
     };
     watch.lap("judging");
     if let Some(path) = &args.markdown {
@@ -208,6 +210,12 @@ fn look(asked: &Asked, bench: &Bench, views: &[View]) -> Result<Option<Viewing>,
     let onlooker = looking.viewing.onlooker(looking.tone);
     let luminances = luminance(photometry, &mean);
     Ok(Some(study::viewing(&onlooker, &bench.stage, bench.per_element, views, &bench.receivers, &luminances)))
+}
+
+/// What stood there before the edit, where a reference tells.
+fn shown_before(path: Option<&Path>, bench: &Bench) -> Option<Before> {
+    let Some(Against::Reference(r)) = &bench.before else { return None };
+    Some(Before { name: path?.display().to_string(), reference: r.patches.mean(), stage: r.stage.clone() })
 }
 
 /// What the reader has to know beside the numbers.

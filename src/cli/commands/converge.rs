@@ -10,7 +10,8 @@ use crate::methods::MethodError;
 use crate::reference::Options;
 use crate::render::views;
 use crate::report::curves::{
-    CURVES_PAGE, CurvesReport, Pictures, Shown, convergence_files, convergence_json, convergence_text, pictures,
+    CURVES_PAGE, CurvesReport, Film, Filmed, Pictures, Shown, convergence_files, convergence_json, convergence_text,
+    film, pictures,
 };
 use crate::report::{Phase, save};
 use crate::scene::Stage;
@@ -81,7 +82,8 @@ pub fn run(args: &ConvergeArgs, kernel: Kernel, console: &Console) -> Result<u8,
     let digest = digest(&curves, args.confidence.0);
     let pictures = painted(&asked, &stages, &references, &own)?;
     let about = converge_told::about(&asked, &scene.name, references.iter().flatten(), timing);
-    let report = CurvesReport { about, curves, digest, pictures };
+    let film = filmed(&stages, &references, &own)?;
+    let report = CurvesReport { about, curves, digest, pictures, film };
     save(&args.output, &convergence_files(&report)?)?;
     tell(&args.output, &convergence_text(&report), convergence_json(&report), console);
     Ok(exit::DONE)
@@ -115,6 +117,18 @@ fn painted(
         }
     }
     Ok(all)
+}
+
+/// The way of every series to the reference of the last state that has one.
+fn filmed(
+    stages: &[Stage],
+    references: &[Option<StoredReference>],
+    series: &[Series],
+) -> Result<Option<Film>, Failure> {
+    let of_state = |k: usize| series.iter().flat_map(|s| &s.snapshots).any(|s| s.edit == k);
+    let mut judged = stages.iter().zip(references).filter_map(|(stage, r)| Some((stage, r.as_ref()?)));
+    let Some((stage, reference)) = judged.rfind(|(stage, _)| of_state(stage.state)) else { return Ok(None) };
+    Ok(film(Filmed { stage, reference: &reference.patches.mean() }, series)?)
 }
 
 /// Prints the summary and where the page is.

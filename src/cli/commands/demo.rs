@@ -94,6 +94,7 @@ pub fn run(output: &Path, kernel: Kernel, console: &Console) -> Result<u8, Failu
         reference: stored.patches.mean(),
         solution: outcome.radiosity.clone(),
         stage: stage.clone(),
+        before: None,
     };
     watch.lap("judging");
     record.contributions = explain(Some(&session), &record, &against, &outcome.radiosity, false);

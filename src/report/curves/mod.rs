@@ -13,6 +13,7 @@ mod testing;
 mod tests;
 mod words;
 
+pub use super::scene3d::{Filmed, Parts as Film, film};
 pub use pictures::{Picture, Pictures, Shown, pictures};
 pub use summary::{convergence_json, convergence_text, difference_json, difference_text, mesh_json, mesh_text};
 pub use table::read_curves;
@@ -56,6 +57,8 @@ pub struct CurvesReport {
     pub digest: Digest,
     /// Pictures on the way, by state.
     pub pictures: Vec<Pictures>,
+    /// The scene on the way, to turn.
+    pub film: Option<Film>,
 }
 
 /// Errors against the size of the mesh.

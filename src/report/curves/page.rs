@@ -3,10 +3,10 @@
 use super::figures::{Drawing, edits};
 use super::plot::slope_text;
 use super::words::{cost, metric_name, metric_short, noise_word, state_name};
-use super::{About, CurvesReport, DifferenceReport, MeshReport};
+use super::{About, CurvesReport, DifferenceReport, Film, MeshReport};
 use crate::metrics::FLOOR_FACTOR;
-use crate::report::ReportError;
 use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
+use crate::report::{ReportError, scene3d};
 use crate::study::converge::{At, Axis, Difference, ReachedRow, mesh_rate};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
 use serde::Serialize;
@@ -72,16 +72,16 @@ fn page<'a>(about: &'a About, title: &str, lead: String) -> Page<'a> {
     }
 }
 
-fn render(page: &Page) -> Result<String, ReportError> {
+fn render(page: &Page, viewer: Option<&Film>) -> Result<String, ReportError> {
     let mut env = Environment::new();
     env.set_auto_escape_callback(|_| AutoEscape::Html);
     env.set_undefined_behavior(UndefinedBehavior::Strict);
     env.set_trim_blocks(true);
     env.set_lstrip_blocks(true);
-    for (name, text) in TEMPLATES {
+    for (name, text) in TEMPLATES.into_iter().chain(scene3d::TEMPLATES) {
         env.add_template(name, text)?;
     }
-    Ok(env.get_template("curves.html")?.render(context! { page })?)
+    Ok(env.get_template("curves.html")?.render(context! { page, viewer })?)
 }
 
 fn drawn(figures: &[Drawing], edit: usize, clock: bool) -> Vec<&str> {
@@ -155,7 +155,7 @@ pub(super) fn of_curves(report: &CurvesReport, figures: &[Drawing]) -> Result<St
         page.clock.extend(Some(clock).filter(|s| !s.is_empty()));
     }
     page.read = reading(&report.about);
-    render(&page)
+    render(&page, report.film.as_ref())
 }
 
 fn shown(report: &CurvesReport, edit: usize) -> Vec<Vec<(String, &str)>> {
@@ -256,7 +256,7 @@ pub(super) fn of_meshes(report: &MeshReport, figures: &[Drawing]) -> Result<Stri
     }];
     page.read =
         reading(&report.about).into_iter().filter(|(t, _)| !["Reached", "Since the edit"].contains(t)).collect();
-    render(&page)
+    render(&page, None)
 }
 
 pub(super) fn of_difference(report: &DifferenceReport, figures: &[Drawing]) -> Result<String, ReportError> {
@@ -284,7 +284,7 @@ pub(super) fn of_difference(report: &DifferenceReport, figures: &[Drawing]) -> R
          they lie apart, it is not. Seconds vary from run to run; nothing here says how much."
             .into(),
     ));
-    render(&page)
+    render(&page, None)
 }
 
 fn difference_table(report: &DifferenceReport, edit: usize, clock: bool) -> Table {

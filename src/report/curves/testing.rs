@@ -42,5 +42,5 @@ pub(super) fn report() -> CurvesReport {
         replay: "etalon converge room.toml".into(),
         timing: vec![Phase { name: "reference".into(), seconds: 1.5 }],
     };
-    CurvesReport { about, curves, digest, pictures: Vec::new() }
+    CurvesReport { about, curves, digest, pictures: Vec::new(), film: None }
 }

@@ -94,6 +94,8 @@ pub(super) struct Worst {
 pub(super) struct WorstRow {
     pub rank: usize,
     pub number: usize,
+    /// The patch that shows it in the scene to turn.
+    pub patch: Option<usize>,
     pub surface: String,
     pub reference: String,
     pub solution: String,
@@ -197,6 +199,7 @@ fn worst(record: &Record, views: &[ViewFigures]) -> Worst {
         rank: k + 1,
         hidden: !views.is_empty() && !in_sight(w.number),
         number: w.number,
+        patch: Level::of(record).patch(record, w.number),
         surface: w.surface,
         reference: minus(&w.reference),
         solution: minus(&w.solution),

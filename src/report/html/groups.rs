@@ -39,6 +39,8 @@ pub(super) struct GroupRow {
     pub relative: Option<String>,
     pub share: Option<Share>,
     pub worst: usize,
+    /// The patch that shows it in the scene to turn.
+    pub worst_patch: Option<usize>,
     pub worst_difference: String,
 }
 
@@ -55,20 +57,20 @@ pub(super) struct Share {
 /// Tables by object, where there is more than one, and by surface.
 pub(super) fn group_tables(record: &Record) -> Vec<GroupTable> {
     let Some(breakdown) = &record.breakdown else { return Vec::new() };
-    let level = Level::of(record);
     let mut tables = Vec::new();
     let objects = &breakdown.objects;
     if objects.len() > 1 && objects.len() < breakdown.surfaces.len() {
-        tables.push(table("By object", "Object", level, objects));
+        tables.push(table(record, "By object", "Object", objects));
     }
     // A comparison without a scene has one nameless surface: the whole of it.
     if breakdown.surfaces.iter().any(|g| !g.name.is_empty()) {
-        tables.push(table("By surface", "Surface", level, &breakdown.surfaces));
+        tables.push(table(record, "By surface", "Surface", &breakdown.surfaces));
     }
     tables
 }
 
-fn table(title: &'static str, noun: &'static str, level: Level, groups: &[GroupError]) -> GroupTable {
+fn table(record: &Record, title: &'static str, noun: &'static str, groups: &[GroupError]) -> GroupTable {
+    let level = Level::of(record);
     let shown = &groups[..groups.len().min(SHOWN)];
     let of = |get: fn(&GroupError) -> f64| -> Vec<f64> { shown.iter().map(get).collect() };
     let (references, solutions) = (of(|g| g.reference.value), of(|g| g.solution));
@@ -93,6 +95,7 @@ fn table(title: &'static str, noun: &'static str, level: Level, groups: &[GroupE
         relative: (g.reference.value != 0.0).then(|| minus(&signed_percent(g.bias.value / g.reference.value))),
         share: g.share.as_ref().map(share),
         worst: g.worst,
+        worst_patch: level.patch(record, g.worst),
         worst_difference: minus(&columns[3][k]),
     };
     GroupTable {

@@ -14,9 +14,11 @@ use super::artifact::check_shape;
 use super::figures::{ViewFigures, figures};
 use super::json::{record_file, timing_file};
 use super::layers::exr_layers;
+use super::scene3d::{self, Parts, scene_view};
 use super::{Artifact, Exporter, Extras, ReportError};
 use crate::io::image::png;
 use crate::study::Record;
+use crate::view::Camera;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use context::Page;
@@ -49,7 +51,7 @@ impl Exporter for HtmlReport {
         let views = figures(record, extras.views)?;
         let pictures = encode(&views)?;
         let page = Page::new(record, &views, extras.timing);
-        let mut files = vec![Artifact::new(PAGE_NAME, render(&page, &pictures)?)];
+        let mut files = vec![Artifact::new(PAGE_NAME, render(&page, &pictures, viewer(record, extras)?.as_ref())?)];
         files.push(record_file(record)?);
         if !extras.timing.is_empty() {
             files.push(timing_file(extras.timing)?);
@@ -72,8 +74,15 @@ fn encode(views: &[ViewFigures]) -> Result<Vec<Artifact>, ReportError> {
     all.map(one).collect()
 }
 
+/// The scene to turn, through the cameras of the pictures.
+fn viewer(record: &Record, extras: &Extras) -> Result<Option<Parts>, ReportError> {
+    let seen: Vec<Camera> = extras.views.iter().map(|v| v.visibility.camera().clone()).collect();
+    let cameras = if seen.is_empty() { &record.stage.cameras } else { &seen };
+    Ok(scene_view(record, cameras).map(|v| Parts::of(&v)).transpose()?)
+}
+
 /// Fills in the page; everything that is not markup of the template is escaped.
-fn render(page: &Page, pictures: &[Artifact]) -> Result<String, ReportError> {
+fn render(page: &Page, pictures: &[Artifact], viewer: Option<&Parts>) -> Result<String, ReportError> {
     let uri = |a: &Artifact| (a.name.clone(), format!("data:image/png;base64,{}", STANDARD.encode(&a.bytes)));
     let uris: BTreeMap<String, String> = pictures.iter().map(uri).collect();
     let mut env = Environment::new();
@@ -81,10 +90,10 @@ fn render(page: &Page, pictures: &[Artifact]) -> Result<String, ReportError> {
     env.set_undefined_behavior(UndefinedBehavior::Strict);
     env.set_trim_blocks(true);
     env.set_lstrip_blocks(true);
-    for (name, text) in TEMPLATES {
+    for (name, text) in TEMPLATES.into_iter().chain(scene3d::TEMPLATES) {
         env.add_template(name, text)?;
     }
-    Ok(env.get_template("page.html")?.render(context! { page, uris })?)
+    Ok(env.get_template("page.html")?.render(context! { page, uris, viewer })?)
 }
 
 #[cfg(test)]

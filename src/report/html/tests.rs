@@ -162,18 +162,31 @@ fn whatever_a_scene_is_called_stays_text() {
     assert!(!html.contains("<script>alert"), "an unescaped name");
     assert!(html.contains("&lt;script&gt;alert(1)"));
     assert!(html.contains("{{ 7 * 7 }}") || html.contains("{{ 7 * 7 }}".replace(' ', "&#x20;").as_str()));
-    // One script, ours.
-    assert_eq!(html.matches("<script").count(), 1);
+    // The page's own, and of the scene to turn: data, library, program.
+    assert_eq!(html.matches("<script").count(), 4);
 }
 
 #[test]
 fn the_page_asks_for_nothing_from_outside() {
     let views = seen();
-    let html = page(&record(), &Extras { views: &views, timing: &[] });
+    let whole = page(&record(), &Extras { views: &views, timing: &[] });
+    // The library names an address of XML, which is none of the network.
+    let html = whole.replace(scene3d::LIBRARY, "");
+    assert!(html.len() + scene3d::LIBRARY.len() == whole.len() && whole.len() < 6_000_000);
     for outside in ["http://", "https://", "src=\"/", "@import", "url(http", "<link"] {
         assert!(!html.contains(outside), "{outside}");
     }
     assert_eq!(html.matches("data:image/png;base64,").count(), 8);
+}
+
+#[test]
+fn the_scene_to_turn_is_there_with_the_licence_of_what_draws_it() {
+    let mut r = record();
+    let html = page(&r, &Extras::default());
+    assert!(html.contains("id=\"viewer-data\"") && html.contains("Copyright \u{a9} 2010-2026 three.js authors"));
+    r.stage = crate::study::anonymous_stage(r.stage.patch_count(), r.stage.photometry.clone());
+    let html = page(&r, &Extras::default());
+    assert!(!html.contains("viewer-data") && !html.contains("three.js"));
 }
 
 #[test]
