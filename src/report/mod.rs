@@ -7,6 +7,7 @@ mod artifact;
 mod asked;
 pub mod audit;
 mod changes;
+mod chart;
 pub mod curves;
 mod figures;
 mod format;
