@@ -109,7 +109,7 @@ pub(super) fn budget_chart(record: &Record) -> Option<Chart> {
         },
         series: vec![series("parts", Paint::Method(0), of_parts.to_vec()), series("whole", Paint::Even, of_whole.to_vec())],
         rules: floor.map(|f| Rule { value: f, name: format!("noise of the reference: {}", percent(f)) }).into_iter().collect(),
-        more: vec!["bias".into()],
+        more: vec![("bias".into(), "bias")],
     })
 }
 

@@ -189,7 +189,16 @@ fn ratios(record: &AuditRecord) -> Option<Chart> {
         },
         series,
         rules: vec![Rule { value: 1.0, name: String::new() }],
-        more: ["patch", "surface", "pixels", "hemicube", "exact", "ratio"].map(String::from).to_vec(),
+        more: [
+            ("patch", "patch"),
+            ("surface", "surface"),
+            ("pixels", "pixels covered"),
+            ("hemicube", "hemi-cube"),
+            ("exact", "exact"),
+            ("ratio", "hemi-cube / exact"),
+        ]
+        .map(|(column, words)| (column.into(), words))
+        .to_vec(),
     })
 }
 

@@ -135,6 +135,8 @@ fn chart(record: &AuditRecord) -> Option<Block> {
         y: errors("error of reflected light (eq. 7)", "error", Scale::Log),
         series: vec![series("as it is", 1, of(true).collect()), series("mended", 0, of(false).collect())],
         rules: limit(record),
-        more: ["what is done", "hemicubes", "pixels", "exact points"].map(String::from).to_vec(),
+        more: [("cure", "what is done"), ("hemicubes", "hemi-cubes"), ("pixels", "pixels"), ("points", "exact points")]
+            .map(|(column, words)| (column.into(), words))
+            .to_vec(),
     })
 }

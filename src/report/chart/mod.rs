@@ -3,13 +3,13 @@
 
 mod axis;
 mod block;
-mod csv;
 mod data;
 mod draw;
 mod labels;
 mod legend;
 mod paint;
 mod svg;
+mod table;
 #[cfg(test)]
 pub(super) mod testing;
 #[cfg(test)]
@@ -32,8 +32,8 @@ pub(super) struct Chart {
     pub series: Vec<Series>,
     /// Lines across.
     pub rules: Vec<Rule>,
-    /// What the further cells of each point are, in the table: name of the column.
-    pub more: Vec<String>,
+    /// What the further cells of each point are: column of the table, and the same in words.
+    pub more: Vec<(String, &'static str)>,
 }
 
 /// Points of one colour.

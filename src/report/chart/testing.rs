@@ -1,6 +1,6 @@
 //! A little chart for the tests.
 
-use super::{Axis, Cell, Chart, Dot, Fit, Paint, Rule, Scale, Series, Shape, Unit};
+use super::{Axis, Cell, Chart, Dot, Fit, Library, Paint, Rule, Scale, Series, Shape, Unit};
 
 /// Four points, one of them at no cost, whose error falls as 0.5 / x.
 pub(in crate::report) fn chart(name: &str) -> Chart {
@@ -29,6 +29,12 @@ pub(in crate::report) fn chart(name: &str) -> Chart {
             fit: Some(Fit { ends: [(1.0, 0.5), (100.0, 0.005)], text: "slope \u{2212}1.00".into() }),
         }],
         rules: vec![Rule { value: 1e-3, name: "noise of the reference: 0.100 %".into() }],
-        more: vec!["rays".into()],
+        more: vec![("rays".into(), "rays")],
     }
+}
+
+/// A page without the library that it carries: what we wrote ourselves.
+pub(in crate::report) fn without_library(page: &str) -> String {
+    let library = Library::for_charts(true).expect("a library");
+    page.replace(library.plotly, "").replace(library.notice, "").replace("http://www.w3.org/2000/svg", "")
 }

@@ -19,13 +19,22 @@ pub(super) struct Drawing {
     pub is_clock: bool,
 }
 
-fn x_title(axis: Axis, edit: usize) -> String {
-    let what = match axis {
+/// What a cost is called.
+fn what(axis: Axis) -> &'static str {
+    match axis {
         Axis::Shots => "shots",
         Axis::Rays => "rays",
         Axis::Seconds => "seconds of computing",
-    };
-    if edit == 0 { what.into() } else { format!("{what} since the edit") }
+    }
+}
+
+fn x_title(axis: Axis, edit: usize) -> String {
+    if edit == 0 { what(axis).into() } else { format!("{} since the edit", what(axis)) }
+}
+
+/// Its column, as in the table of all curves.
+fn column(axis: Axis, edit: usize) -> String {
+    format!("{}{}", axis.name(), if edit == 0 { "" } else { "_since_edit" })
 }
 
 /// States in rising order.
@@ -116,14 +125,14 @@ fn drawing(metric: Metric, axis: Axis, edit: usize, last: usize, curves: &[Curve
     let drawn = curves.iter().filter(|c| c.edit == edit && c.spends(axis));
     let floor = drawn.flat_map(|c| &c.points).filter(|p| p.error(metric).is_some()).filter_map(|p| p.floor(metric)).reduce(f64::max);
     let against = if axis.is_clock() { "time" } else { axis.name() };
-    let since = if edit == 0 { "" } else { "_since_edit" };
+    let noise = (format!("{}noise_floor", if metric == Metric::Top1 { "top1_" } else { "" }), "noise of the reference");
     let chart = Chart {
         stem: format!("{}-{}-edit-{edit}", metric.name(), axis.name()),
         title: format!("{}: {} against {against}", state_name(edit, last), metric_name(metric)),
         caption: String::new(),
         x: ChartAxis {
             title: x_title(axis, edit),
-            column: format!("{}{since}", axis.name()),
+            column: column(axis, edit),
             unit: unit(axis),
             scale: Scale::Log,
         },
@@ -135,7 +144,7 @@ fn drawing(metric: Metric, axis: Axis, edit: usize, last: usize, curves: &[Curve
         },
         series,
         rules: floor_rule(floor),
-        more: beside(axis).map(|a| x_title(a, edit)).chain(["noise of the reference".into()]).collect(),
+        more: beside(axis).map(|a| (column(a, edit), what(a))).chain([noise]).collect(),
     };
     Some(Drawing { chart: Block::of(&chart)?, edit, is_clock: axis.is_clock() })
 }
@@ -237,7 +246,9 @@ pub(super) fn of_meshes(report: &MeshReport) -> Vec<Drawing> {
         },
         series: report.curves.iter().enumerate().map(|(k, c)| mesh_line(k, c, confidence)).collect(),
         rules: floor_rule(floor),
-        more: ["factor", "patches", "noise of the reference"].map(String::from).to_vec(),
+        more: [("factor", "factor"), ("patches", "patches"), ("noise_floor", "noise of the reference")]
+            .map(|(column, words)| (column.into(), words))
+            .to_vec(),
     };
     Block::of(&chart).map(|chart| Drawing { chart, edit: 0, is_clock: false }).into_iter().collect()
 }

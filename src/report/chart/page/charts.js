@@ -155,6 +155,13 @@
           out.push(bar);
           return;
         }
+        // A step runs over its whole width.
+        if (s.shape === "steps") {
+          const ends = s.x.flatMap((v, i) => [v - s.width[i] / 2, v + s.width[i] / 2]), twice = list => list.flatMap(v => [v, v]);
+          out.push({ ...common, ...hover, text: twice(hover.text), x: ends, y: twice(s.y.map(y)), mode: "lines",
+            line: { color: colour(s.paint), width: 2, dash: s.dash } });
+          return;
+        }
         // From left to right, as the drawing has it.
         const order = s.x.map((_, i) => i);
         if (s.shape === "line") order.sort((a, b) => s.x[a] - s.x[b]);
@@ -166,8 +173,7 @@
         if (s.fit) out.push({ ...silent, x: s.fit.x, y: s.fit.y, mode: "lines", line: { color: colour(s.paint), width: 1.3, dash: "dot" } });
         const crowded = xs.length > CROWD;
         const trace = { ...common, ...hover, text: of(hover.text, t => t), x: xs, y: of(s.y, y), name: plain(s.name),
-          mode: { line: "lines+markers", dots: s.label ? "markers" : "markers", steps: "lines" }[s.shape],
-          line: { color: colour(s.paint), width: 2, dash: s.dash, shape: s.shape === "steps" ? "hvh" : "linear" },
+          mode: s.shape === "line" ? "lines+markers" : "markers", line: { color: colour(s.paint), width: 2, dash: s.dash },
           marker: { color: colour(s.paint), symbol: s.mark, size: crowded ? 4 : 8, opacity: xs.length > SPARSE ? 0.6 : 1 } };
         if (s.high && !crowded) trace.error_y = this.whiskers({ y: of(s.y, v => v), low: of(s.low, v => v), high: of(s.high, v => v) }, y, s.paint);
         out.push(trace);
@@ -213,7 +219,8 @@
       layout.shapes.push({ type: "line", xref: "paper", x0: 0, x1: 1, y0: r.y, y1: r.y, line: { color: soft, width: 1.3, dash: "dash" } });
       const inside = !this.log.y || r.y >= this.data.y.log[0];
       if (r.name) layout.annotations.push({ xref: "paper", x: 1, xanchor: "right", yref: inside ? "y" : "paper", yanchor: "bottom",
-        y: inside ? (this.log.y ? Math.log10(r.y) : r.y) : 0, text: plain(r.name) + (inside ? "" : " (below)"), showarrow: false, font: { size: 11, color: soft } });
+        y: inside ? (this.log.y ? Math.log10(r.y) : r.y) : 0, text: plain(r.name) + (inside ? "" : " (below)"), showarrow: false, font: { size: 11, color: soft },
+        bgcolor: colour("card"), opacity: 0.85 });
     }
 
     axis(name, margin) {

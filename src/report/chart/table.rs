@@ -53,7 +53,7 @@ impl Chart {
         head.push(y.clone());
         head.extend(columns.std_err.then(|| format!("{y}_std_err")));
         head.extend(columns.interval.then(|| [format!("{y}_low"), format!("{y}_high")]).into_iter().flatten());
-        head.extend(self.more.iter().map(|m| m.replace(' ', "_")));
+        head.extend(self.more.iter().map(|m| m.0.clone()));
         out.write_record(&head).expect("memory is writable");
         for s in &self.series {
             for d in &s.dots {
@@ -91,7 +91,7 @@ impl Chart {
         head.extend(columns.series.then(String::new));
         head.extend([self.x.title.clone(), self.y.title.clone()]);
         head.extend(columns.interval.then(|| "interval".to_string()));
-        head.extend(self.more.iter().cloned());
+        head.extend(self.more.iter().map(|m| m.1.to_string()));
         let all: Vec<(&Series, &Dot)> = self.series.iter().flat_map(|s| s.dots.iter().map(move |d| (s, d))).collect();
         let rows = all.iter().take(ROWS).map(|(s, d)| self.cells(&columns, s, d)).collect();
         Rows { head, rows, all: all.len() }
