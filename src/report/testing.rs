@@ -1,7 +1,8 @@
 //! A real little record for the tests of reports: the room of `render::testing` under direct light.
 
 use crate::metrics::{
-    Breakdown, Comparison, Decision, Judged, LimitOutcome, Part as ErrorPart, Split, Truth, Verdict, WorstPatch, break_down,
+    Breakdown, Comparison, Decision, Judged, LimitOutcome, Part as ErrorPart, Split, Truth, Verdict, WorstPatch,
+    break_down,
 };
 use crate::render::luminance;
 use crate::render::testing::{direct_light, room};
@@ -166,7 +167,9 @@ pub(crate) fn set(record: &mut Record, name: &str, value: &str) {
 pub(crate) fn with_split() -> Record {
     let mut r = record();
     let worst = r.comparison.worst.first().cloned();
-    let part = |rms: f64, half_width: f64, bias: f64| Some(ErrorPart { rms: estimate(rms, half_width), bias, worst: worst.clone() });
+    let part = |rms: f64, half_width: f64, bias: f64| {
+        Some(ErrorPart { rms: estimate(rms, half_width), bias, worst: worst.clone() })
+    };
     r.split = Some(Split {
         solver: part(0.002, 0.0001, -0.001),
         form_factor: part(0.011, 0.001, 0.004),

@@ -2,7 +2,7 @@
 
 use crate::metrics::{Point, fit_rate};
 use crate::report::chart::{Axis, Block, Cell, Chart, Dot, Fit, Paint, Rule, Scale, Series, Shape, Unit};
-use crate::report::format::{confidence, count, percent, percent_exact, percent_estimate, significant};
+use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
 use crate::stats::Estimate;
 use crate::study::audit::{At, AuditRecord, Form};
 

@@ -4,8 +4,8 @@ use super::*;
 use crate::io::scene::builtin;
 use crate::raycast::KernelKind;
 use crate::reference::{Options, Progress};
-use crate::report::chart::testing::without_library;
 use crate::render::{Visibility, fit_camera};
+use crate::report::chart::testing::without_library;
 use crate::report::format::percent_estimate;
 use crate::report::html::context::minus;
 use crate::study::Session;
@@ -270,7 +270,12 @@ fn an_audit_without_limit_cures_and_curves_has_a_page() {
     r.sources.clear();
     r.views.clear();
     let page = page(&r);
-    assert!(page.contains("NO LIMIT") && !page.contains("<h2>Cures") && !page.contains("class=\"chart\"") && !page.contains("Plotly"));
+    assert!(
+        page.contains("NO LIMIT")
+            && !page.contains("<h2>Cures")
+            && !page.contains("class=\"chart\"")
+            && !page.contains("Plotly")
+    );
 }
 
 #[test]

@@ -75,10 +75,10 @@ pub(in crate::report) struct Axis {
     pub scale: Scale,
 }
 
-/// A round step of which about four make up `high`.
+/// A round step of which about five make up `high`.
 pub(in crate::report) fn round_step(high: f64) -> f64 {
-    let power = 10f64.powf((high / 4.0).log10().floor());
-    power * [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= high / 4.0).unwrap_or(10.0)
+    let power = 10f64.powf((high / 5.0).log10().floor());
+    power * [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= high / 5.0).unwrap_or(10.0)
 }
 
 /// Ends of a logarithmic axis on which all of `values` fit, with some room; only those above 0 count.
@@ -176,7 +176,7 @@ mod tests {
         let labels: Vec<String> = axis.marks().into_iter().filter_map(|(_, l)| l).collect();
         assert_eq!(labels, ["\u{2212}2 %", "0 %", "2 %", "4 %"]);
         assert!((axis.place(0.01) - 100.0).abs() < 1e-9);
-        assert_eq!([0.4, 5.125, 1.0].map(round_step), [0.1, 2.0, 0.5]);
+        assert_eq!([0.4, 5.125, 1.0].map(round_step), [0.1, 2.0, 0.2]);
     }
 
     #[test]

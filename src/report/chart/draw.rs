@@ -1,6 +1,6 @@
 //! One series of a drawing: band, line, bars, marks.
 
-use super::svg::{Frame, HEIGHT, BOTTOM, escaped};
+use super::svg::{BOTTOM, Frame, HEIGHT, escaped};
 use super::{Dot, Paint, Series, Shape};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -42,7 +42,8 @@ pub(super) fn dashes(series: &Series) -> &'static str {
 
 fn line(series: &Series, f: &Frame, out: &mut String) {
     // An error of 0, its noise taken out, stands at the lower end: its interval still says something.
-    let mut dots: Vec<&Dot> = series.dots.iter().filter(|d| d.y > 0.0 || d.interval.is_some_and(|i| i.1 > 0.0)).collect();
+    let mut dots: Vec<&Dot> =
+        series.dots.iter().filter(|d| d.y > 0.0 || d.interval.is_some_and(|i| i.1 > 0.0)).collect();
     dots.sort_by(|a, b| a.x.total_cmp(&b.x));
     if dots.len() > 1 {
         if dots.iter().any(|d| d.interval.is_some()) {
@@ -69,8 +70,7 @@ fn line(series: &Series, f: &Frame, out: &mut String) {
 fn fit(series: &Series, f: &Frame, out: &mut String) {
     let Some(fit) = &series.fit else { return };
     let path = points(fit.ends.iter().map(|(a, b)| (f.x(*a), y(f, *b))));
-    let _ =
-        writeln!(out, "<path d=\"M{path}\" stroke-width=\"1.1\" stroke-dasharray=\"1.5 3\" fill=\"none\"/>");
+    let _ = writeln!(out, "<path d=\"M{path}\" stroke-width=\"1.1\" stroke-dasharray=\"1.5 3\" fill=\"none\"/>");
 }
 
 fn dots(series: &Series, f: &Frame, out: &mut String) {
@@ -122,11 +122,8 @@ fn steps(series: &Series, f: &Frame, out: &mut String) {
         format!("{from:.1} {y:.1}H{to:.1}")
     };
     let path: Vec<String> = series.dots.iter().map(step).collect();
-    let _ = writeln!(
-        out,
-        "<path d=\"M{}\" fill=\"none\" stroke-width=\"1.6\" stroke-linejoin=\"round\"/>",
-        path.join("L")
-    );
+    let _ =
+        writeln!(out, "<path d=\"M{}\" fill=\"none\" stroke-width=\"1.6\" stroke-linejoin=\"round\"/>", path.join("L"));
 }
 
 fn whisker(d: &Dot, f: &Frame, out: &mut String) {

@@ -58,9 +58,10 @@ impl<'a> Legend<'a> {
                 Shape::Steps => {}
                 Shape::Line | Shape::Dots => mark(s.paint, x + 15.0, *y, 3.6, "", out),
             }
-            let slope = s.fit.as_ref().map_or(String::new(), |f| {
-                format!(" <tspan fill=\"#5b636b\">{}</tspan>", escaped(&f.text))
-            });
+            let slope = s
+                .fit
+                .as_ref()
+                .map_or(String::new(), |f| format!(" <tspan fill=\"#5b636b\">{}</tspan>", escaped(&f.text)));
             let _ = writeln!(
                 out,
                 "</g><text x=\"{:.1}\" y=\"{:.1}\"><title>{}</title>{}{slope}</text>",

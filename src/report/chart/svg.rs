@@ -117,7 +117,8 @@ impl Chart {
             let lines = label.map_or(Vec::new(), |l| if named { two_lines(&l) } else { vec![l] });
             for (k, line) in lines.iter().enumerate() {
                 let y = bottom + 18.0 + 15.0 * k as f64;
-                let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{}</text>", escaped(line));
+                let _ =
+                    writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{}</text>", escaped(line));
             }
         }
         for (y, label) in f.y.marks() {

@@ -76,7 +76,14 @@ impl Chart {
         }
         row.push(number(Some(d.y)));
         row.extend(columns.std_err.then(|| number(d.std_err)));
-        row.extend(columns.interval.then(|| [d.interval.map(|i| i.0), d.interval.map(|i| i.1)]).into_iter().flatten().map(number));
+        row.extend(
+            columns
+                .interval
+                .then(|| [d.interval.map(|i| i.0), d.interval.map(|i| i.1)])
+                .into_iter()
+                .flatten()
+                .map(number),
+        );
         row.extend(d.more.iter().map(|c| match c {
             Cell::Number(x, _) => number(*x),
             Cell::Text(text) => text.clone(),

@@ -6,7 +6,8 @@ const ATTACK: &str = "</script><b>x</b>&\"%{y} <!--";
 #[test]
 fn all_that_is_asked_for_is_drawn() {
     let svg = chart("mine").svg().expect("a drawing");
-    let parts = ["noise of the reference: 0.100 %", "stroke-dasharray=\"7 5\"", "slope \u{2212}1.00", ">0</text>", "mine"];
+    let parts =
+        ["noise of the reference: 0.100 %", "stroke-dasharray=\"7 5\"", "slope \u{2212}1.00", ">0</text>", "mine"];
     for part in parts {
         assert!(svg.contains(part), "{part}\n{svg}");
     }
@@ -47,7 +48,16 @@ fn the_table_holds_every_point_to_the_bit() {
     for (row, d) in rows.iter().zip(&c.series[0].dots) {
         assert_eq!(&row[0], ATTACK);
         let read = |k: usize| row[k].parse::<f64>().expect("a number");
-        assert_eq!((read(1), read(2), read(3), read(4), read(6)), (d.x, d.y, 0.02 * chart("").series[0].dots.iter().find(|e| e.x == d.x).expect("the same").y, d.interval.expect("an interval").0, 64.0 * d.x));
+        assert_eq!(
+            (read(1), read(2), read(3), read(4), read(6)),
+            (
+                d.x,
+                d.y,
+                0.02 * chart("").series[0].dots.iter().find(|e| e.x == d.x).expect("the same").y,
+                d.interval.expect("an interval").0,
+                64.0 * d.x
+            )
+        );
     }
     assert_eq!(&rows[2][5], "", "an interval without end has no number there");
 }

@@ -89,8 +89,7 @@ fn beside(axis: Axis) -> impl Iterator<Item = Axis> {
 
 fn dot(p: &CurvePoint, metric: Metric, axis: Axis) -> Option<Dot> {
     let e = p.error(metric)?;
-    let costs: Vec<String> =
-        std::iter::once(axis).chain(beside(axis)).map(|a| cost_text(p.cost(a), a)).collect();
+    let costs: Vec<String> = std::iter::once(axis).chain(beside(axis)).map(|a| cost_text(p.cost(a), a)).collect();
     let costs_beside = beside(axis).map(|a| Cell::Number(Some(p.cost(a)), unit(a)));
     Some(Dot {
         x: p.cost(axis),
@@ -121,21 +120,27 @@ fn floor_rule(floor: Option<f64>) -> Vec<Rule> {
     floor.filter(|f| *f > 0.0).map(rule).into_iter().collect()
 }
 
-fn drawing(metric: Metric, axis: Axis, edit: usize, last: usize, curves: &[Curve], series: Vec<Series>) -> Option<Drawing> {
+fn drawing(
+    metric: Metric,
+    axis: Axis,
+    edit: usize,
+    last: usize,
+    curves: &[Curve],
+    series: Vec<Series>,
+) -> Option<Drawing> {
     let drawn = curves.iter().filter(|c| c.edit == edit && c.spends(axis));
-    let floor = drawn.flat_map(|c| &c.points).filter(|p| p.error(metric).is_some()).filter_map(|p| p.floor(metric)).reduce(f64::max);
+    let floor = drawn
+        .flat_map(|c| &c.points)
+        .filter(|p| p.error(metric).is_some())
+        .filter_map(|p| p.floor(metric))
+        .reduce(f64::max);
     let against = if axis.is_clock() { "time" } else { axis.name() };
     let noise = (format!("{}noise_floor", if metric == Metric::Top1 { "top1_" } else { "" }), "noise of the reference");
     let chart = Chart {
         stem: format!("{}-{}-edit-{edit}", metric.name(), axis.name()),
         title: format!("{}: {} against {against}", state_name(edit, last), metric_name(metric)),
         caption: String::new(),
-        x: ChartAxis {
-            title: x_title(axis, edit),
-            column: column(axis, edit),
-            unit: unit(axis),
-            scale: Scale::Log,
-        },
+        x: ChartAxis { title: x_title(axis, edit), column: column(axis, edit), unit: unit(axis), scale: Scale::Log },
         y: ChartAxis {
             title: metric_name(metric).into(),
             column: metric.name().into(),
@@ -174,9 +179,8 @@ pub(super) fn of_curves(report: &CurvesReport) -> Vec<Drawing> {
 
 pub(super) fn of_difference(report: &DifferenceReport) -> Vec<Drawing> {
     let methods = methods(&report.curves[0]);
-    let both = |a: &&Curve| {
-        report.curves.iter().all(|run| run.iter().any(|b| b.method == a.method && b.edit == a.edit))
-    };
+    let both =
+        |a: &&Curve| report.curves.iter().all(|run| run.iter().any(|b| b.method == a.method && b.edit == a.edit));
     let shared: Vec<Curve> = report.curves.iter().flatten().filter(both).cloned().collect();
     every(&shared, |metric, axis, edit| {
         let mut lines = Vec::new();

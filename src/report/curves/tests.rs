@@ -104,7 +104,8 @@ fn a_drawings_table_holds_the_numbers_of_the_run() {
         "series,shots_since_edit,rms,rms_std_err,rms_low,rms_high,rays_since_edit,noise_floor"
     );
     let rows: Vec<csv::StringRecord> = read.records().map(|r| r.expect("a row")).collect();
-    let points = report.curves.iter().filter(|c| c.edit == 1).flat_map(|c| c.points.iter().map(move |p| (&c.method, p)));
+    let points =
+        report.curves.iter().filter(|c| c.edit == 1).flat_map(|c| c.points.iter().map(move |p| (&c.method, p)));
     let wanted: Vec<_> = points.collect();
     assert_eq!(rows.len(), wanted.len());
     for (row, (method, p)) in rows.iter().zip(wanted) {

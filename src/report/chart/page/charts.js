@@ -208,11 +208,26 @@
         layout.shapes.push({ type: "rect", xref: "x", yref: "paper", x0: 10 ** margin.low, x1: 10 ** margin.end, y0: 0, y1: 1,
           fillcolor: colour("well"), line: { width: 0 }, layer: "below" });
       }
-      (this.data.series.flatMap(s => this.on[this.data.series.indexOf(s)] && s.label ? s.label.map((t, i) => [s, t, i]) : [])).forEach(([s, t, i]) => {
-        if (t && s.x[i] > 0) layout.annotations.push({ x: this.log.x ? Math.log10(s.x[i]) : s.x[i], y: this.log.y ? Math.log10(s.y[i]) : s.y[i],
-          text: plain(t), showarrow: false, yshift: 13, font: { size: 11, color: soft } });
-      });
+      this.labels(layout, soft);
       return layout;
+    }
+
+    // What is written beside points: above or below, where nothing else is written.
+    labels(layout, soft) {
+      const taken = [], place = (name, v) => {
+        const [a, b] = layout[name + "axis"].range, at = this.log[name] ? Math.log10(v) : v;
+        return (at - a) / (b - a) * (name === "x" ? this.stage.clientWidth - 80 : this.stage.clientHeight - 60);
+      };
+      this.data.series.forEach((s, k) => (this.on[k] && s.label || []).forEach((text, i) => {
+        if (!text || (this.log.x && !(s.x[i] > 0)) || (this.log.y && !(s.y[i] > 0))) return;
+        const x = place("x", s.x[i]), y = place("y", s.y[i]), half = 3.4 * text.length;
+        const free = shift => taken.every(t => Math.abs(t.x - x) > t.half + half || Math.abs(t.y - y - shift) > 13);
+        const yshift = [14, -14, 27, -27].find(free);
+        if (yshift === undefined) return;
+        taken.push({ x, y: y + yshift, half });
+        layout.annotations.push({ x: this.log.x ? Math.log10(s.x[i]) : s.x[i], y: this.log.y ? Math.log10(s.y[i]) : s.y[i],
+          text: plain(text), showarrow: false, yshift, font: { size: 11, color: soft } });
+      }));
     }
 
     rule(r, layout, soft) {
@@ -227,7 +242,7 @@
       const axis = this.data[name], log = this.log[name], grid = colour("line");
       const out = { title: { text: plain(axis.title), standoff: 8 }, type: log ? "log" : "linear", range: this.range(name, margin),
         gridcolor: grid, zerolinecolor: grid, linecolor: colour("soft"), showline: true, ticks: "", automargin: true,
-        uirevision: String(log), hoverformat: "", minorloglabels: "none" };
+        uirevision: String(log), spikecolor: colour("soft"), spikethickness: 1, spikedash: "dot" };
       if (name === "x") out.unifiedhovertitle = { text: plain(axis.title) };
       if (axis.names) return { ...out, tickmode: "array", tickvals: axis.names.map((_, k) => k),
         ticktext: axis.names.map(n => plain(n).replace(/ (?=\S+$)/, "<br>")), showgrid: false, fixedrange: true };
