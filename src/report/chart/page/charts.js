@@ -139,8 +139,9 @@
     }
 
     traces() {
-      const margin = this.margin(), floor = this.log.y ? this.data.y.log[0] / 1e3 : -Infinity;
+      const margin = this.margin(), floor = this.log.y ? this.data.y.log[0] : -Infinity;
       const x = v => v > 0 || !margin ? v : 10 ** margin.at;
+      // What reaches to 0 or below ends at the axis; pointed at, it says what it is.
       const y = v => v === null ? null : Math.max(v, floor);
       const out = [];
       this.data.series.forEach((s, k) => {
@@ -174,6 +175,7 @@
         const crowded = xs.length > CROWD;
         const trace = { ...common, ...hover, text: of(hover.text, t => t), x: xs, y: of(s.y, y), name: plain(s.name),
           mode: s.shape === "line" ? "lines+markers" : "markers", line: { color: colour(s.paint), width: 2, dash: s.dash },
+          cliponaxis: false,
           marker: { color: colour(s.paint), symbol: s.mark, size: crowded ? 4 : 8, opacity: xs.length > SPARSE ? 0.6 : 1 } };
         if (s.high && !crowded) trace.error_y = this.whiskers({ y: of(s.y, v => v), low: of(s.low, v => v), high: of(s.high, v => v) }, y, s.paint);
         out.push(trace);
@@ -203,7 +205,7 @@
         dragmode: matchMedia("(pointer: coarse)").matches ? false : "zoom", uirevision: "same", shapes: [], annotations: [],
         xaxis: this.axis("x", margin), yaxis: this.axis("y", null),
       };
-      for (const r of this.data.rules) this.rule(r, layout, soft);
+      for (const r of this.data.rules) this.rule(r, layout, soft, margin);
       if (margin) {
         layout.shapes.push({ type: "rect", xref: "x", yref: "paper", x0: 10 ** margin.low, x1: 10 ** margin.end, y0: 0, y1: 1,
           fillcolor: colour("well"), line: { width: 0 }, layer: "below" });
@@ -230,10 +232,12 @@
       }));
     }
 
-    rule(r, layout, soft) {
+    // A line across; curves come down from the left, so that its name stands there.
+    rule(r, layout, soft, margin) {
       layout.shapes.push({ type: "line", xref: "paper", x0: 0, x1: 1, y0: r.y, y1: r.y, line: { color: soft, width: 1.3, dash: "dash" } });
       const inside = !this.log.y || r.y >= this.data.y.log[0];
-      if (r.name) layout.annotations.push({ xref: "paper", x: 1, xanchor: "right", yref: inside ? "y" : "paper", yanchor: "bottom",
+      const lines = this.data.series.some(s => s.shape === "line"), at = lines ? { x: margin ? 0.09 : 0.005, xanchor: "left" } : { x: 1, xanchor: "right" };
+      if (r.name) layout.annotations.push({ xref: "paper", ...at, yref: inside ? "y" : "paper", yanchor: "bottom",
         y: inside ? (this.log.y ? Math.log10(r.y) : r.y) : 0, text: plain(r.name) + (inside ? "" : " (below)"), showarrow: false, font: { size: 11, color: soft },
         bgcolor: colour("card"), opacity: 0.85 });
     }
