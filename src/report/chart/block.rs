@@ -12,7 +12,8 @@ pub(in crate::report) const STYLE: (&str, &str) = ("chart.css", include_str!("pa
 
 const PLOTLY: &str = include_str!("../vendor/plotly-basic.min.js");
 const LICENCES: &str = include_str!("../vendor/LICENSES.txt");
-const CODE: &str = include_str!("page/charts.js");
+const CODE: &str =
+    concat!(include_str!("page/look.js"), include_str!("page/picture.js"), include_str!("page/charts.js"));
 
 /// What a page carries to draw its charts.
 #[derive(Debug, Clone, Copy, Serialize)]
