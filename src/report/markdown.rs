@@ -4,6 +4,7 @@ use super::asked::Level;
 use super::format::printable;
 use super::headline::{headline, verdict_word, warnings};
 use super::lines::{MetricLine, WorstLine, metric_lines, worst_lines, worst_title};
+use super::split::{READING, budget_lines, noise_sentence};
 use super::thumbnail::thumbnail;
 use super::{Artifact, Exporter, Extras, ReportError};
 use crate::metrics::Verdict;
@@ -53,6 +54,9 @@ fn markdown(record: &Record, picture: Option<&str>) -> String {
         push(&format!("![Reference, solution and signed difference]({})", name.replace(' ', "%20")));
     }
     push(&metrics(&lines));
+    if let Some(text) = budget(record) {
+        push(&text);
+    }
     let worst = worst_lines(record);
     if !worst.is_empty() {
         push(&folded(&worst_title(record), &worst_table(&worst, Level::of(record).noun())));
@@ -103,6 +107,25 @@ fn metrics(lines: &[MetricLine]) -> String {
         format!("| {} (`{}`) | {} | {interval} | {limit} | {verdict} |", escape(&l.name), key(&l.key), l.value)
     }));
     rows.join("\n")
+}
+
+/// Where the error comes from, part by part with its interval; `None` where it was not split.
+fn budget(record: &Record) -> Option<String> {
+    let lines = budget_lines(record);
+    if lines.is_empty() {
+        return None;
+    }
+    let mut rows = vec![
+        "**Where the error comes from**\n".to_string(),
+        "| part | value | interval | bias | worst |".into(),
+        "|---|---:|---:|---:|---|".into(),
+    ];
+    rows.extend(lines.iter().map(|[name, value, interval, bias, worst]| {
+        let bias = bias.trim_start_matches("bias ");
+        format!("| {name} | {value} | {interval} | {bias} | {} |", escape(worst.trim_start_matches("worst ")))
+    }));
+    rows.push(format!("\n{}", noise_sentence(record).as_deref().unwrap_or(READING)));
+    Some(rows.join("\n"))
 }
 
 /// A key holds the name of a band, which may be anything.
@@ -162,7 +185,18 @@ fn code(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::testing::with_verdict;
+    use crate::report::testing::{with_split, with_verdict};
+
+    #[test]
+    fn a_split_has_a_table_with_intervals_and_the_noise() {
+        let mut r = with_split();
+        r.split.as_mut().expect("a split").solver.as_mut().expect("a part").worst.as_mut().expect("a patch").surface =
+            "a|b <i>".into();
+        let text = markdown(&r, None);
+        assert!(text.contains("| form factors | 1.10 % | 1.00 to 1.20 % | +0.400 % | patch "), "{text}");
+        assert!(text.contains("on a\\|b &lt;i&gt; |") && text.contains("of the squared difference"), "{text}");
+        assert!(!markdown(&with_verdict(Verdict::Fail), None).contains("Where the error comes from"));
+    }
 
     #[test]
     fn a_failure_reads_well() {

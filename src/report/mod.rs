@@ -8,6 +8,7 @@ mod asked;
 pub mod audit;
 mod brightness;
 mod changes;
+mod chart;
 pub mod curves;
 mod figures;
 mod format;

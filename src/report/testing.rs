@@ -1,6 +1,9 @@
 //! A real little record for the tests of reports: the room of `render::testing` under direct light.
 
-use crate::metrics::{Breakdown, Comparison, Decision, Judged, LimitOutcome, Truth, Verdict, WorstPatch, break_down};
+use crate::metrics::{
+    Breakdown, Comparison, Decision, Judged, LimitOutcome, Part as ErrorPart, Split, Truth, Verdict, WorstPatch,
+    break_down,
+};
 use crate::render::luminance;
 use crate::render::testing::{direct_light, room};
 use crate::scene::{Consequence, Finding, FindingKind, Place, Severity, Stage};
@@ -160,4 +163,20 @@ pub(crate) fn with_verdict(verdict: Verdict) -> Record {
 pub(crate) fn set(record: &mut Record, name: &str, value: &str) {
     record.settings.retain(|s| s.name != name);
     record.settings.push(Setting::given(Part::Judgement, name, value));
+}
+
+/// The same with the error split into its parts: given, not computed.
+pub(crate) fn with_split() -> Record {
+    let mut r = record();
+    let worst = r.comparison.worst.first().cloned();
+    let part = |rms: f64, half_width: f64, bias: f64| {
+        Some(ErrorPart { rms: estimate(rms, half_width), bias, worst: worst.clone() })
+    };
+    r.split = Some(Split {
+        solver: part(0.002, 0.0001, -0.001),
+        form_factor: part(0.011, 0.001, 0.004),
+        discretisation: part(0.006, 0.0004, 0.00012),
+        ..Split::default()
+    });
+    r
 }

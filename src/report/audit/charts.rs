@@ -1,13 +1,10 @@
 //! Which charts the page has.
 
-use super::chart::{Axis, Chart, Dot, Series};
 use crate::metrics::{Point, fit_rate};
-use crate::report::curves::axis::Unit;
-use crate::report::format::{confidence, count, percent, percent_exact, significant};
-use crate::report::html::context::minus;
+use crate::report::chart::{Axis, Block, Cell, Chart, Dot, Fit, Paint, Rule, Scale, Series, Shape, Unit};
+use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
 use crate::stats::Estimate;
 use crate::study::audit::{At, AuditRecord, Form};
-use serde::Serialize;
 
 /// Ratios are drawn up to this; those beyond stand at the upper end.
 const TOP_RATIO: f64 = 3.0;
@@ -20,61 +17,58 @@ const COVERED: [(f64, &str); 5] = [
     (f64::INFINITY, "100 and more"),
 ];
 
-/// A chart with its words.
-#[derive(Debug, Serialize)]
-pub(super) struct ChartBlock {
-    pub id: &'static str,
-    pub title: String,
-    pub caption: String,
-    pub svg: String,
-    /// (colour class, name), where there is more than one.
-    pub legend: Vec<(String, String)>,
-}
-
-fn block(id: &'static str, caption: String, chart: &Chart) -> Option<ChartBlock> {
-    let named = chart.series.iter().filter(|s| !s.dots.is_empty() && !s.name.is_empty());
-    let legend: Vec<(String, String)> = named.map(|s| (s.class.clone(), minus(&s.name))).collect();
-    Some(ChartBlock { id, title: chart.name.clone(), caption: minus(&caption), svg: chart.svg()?, legend })
-}
-
 /// Charts that do not depend on the clock.
-pub(super) fn charts(record: &AuditRecord) -> Vec<ChartBlock> {
-    [resolutions(record), ratios(record), rotations(record)].into_iter().flatten().collect()
+pub(super) fn charts(record: &AuditRecord) -> Vec<Block> {
+    [resolutions(record), ratios(record), rotations(record)].iter().flatten().filter_map(Block::of).collect()
 }
 
-fn limit(record: &AuditRecord) -> Vec<(f64, String)> {
-    record.limit.map(|l| (l, format!("limit {}", percent_exact(l)))).into_iter().collect()
+/// The limit as a line across.
+pub(super) fn limit(record: &AuditRecord) -> Vec<Rule> {
+    let rule = |l| Rule { value: l, name: format!("limit {}", percent_exact(l)) };
+    record.limit.map(rule).into_iter().collect()
 }
 
-fn judged(x: f64, e: &Estimate, hint: String) -> Dot {
-    Dot { x, y: e.value, interval: Some((e.low, e.high)), label: None, hint }
+pub(super) fn errors(title: &str, column: &str, scale: Scale) -> Axis {
+    Axis { title: title.into(), column: column.into(), unit: Unit::Percent, scale }
 }
 
 /// Error and aliasing, as two series over what is varied.
 fn pair(all: &[At], what: &dyn Fn(f64) -> String) -> [Series; 2] {
-    let error = |a: &At| a.wrong.rms.map(|e| judged(a.x, &e, format!("{}: {}", what(a.x), percent(e.value))));
+    let error = |a: &At| {
+        let e = a.wrong.rms?;
+        let shown = percent_estimate(&e, false);
+        let within = shown.interval.map_or(String::new(), |i| format!(" ({i})"));
+        Some(Dot {
+            x: a.x,
+            y: e.value,
+            std_err: e.std_err,
+            interval: Some((e.low, e.high)),
+            hint: format!("{}{within} at {}", shown.value, what(a.x)),
+            ..Dot::default()
+        })
+    };
     let aliasing = |a: &At| Dot {
         x: a.x,
         y: a.aliasing,
-        interval: None,
-        label: None,
-        hint: format!("{}: {}", what(a.x), percent(a.aliasing)),
+        hint: format!("{} at {}", percent(a.aliasing), what(a.x)),
+        ..Dot::default()
     };
-    let series = |name: &str, class: &str, dots| Series {
+    let series = |name: &str, k, dots| Series {
         name: name.into(),
-        class: class.into(),
+        paint: Paint::Method(k),
+        dashed: false,
+        shape: Shape::Line,
         dots,
-        joined: true,
         fit: None,
     };
     [
-        series("error of reflected light (eq. 7)", "k0", all.iter().filter_map(error).collect()),
-        series("aliasing in the form factors", "k1", all.iter().map(aliasing).collect()),
+        series("error of reflected light (eq. 7)", 0, all.iter().filter_map(error).collect()),
+        series("aliasing in the form factors", 1, all.iter().map(aliasing).collect()),
     ]
 }
 
 /// Both against resolution, with the fitted rate of aliasing.
-fn resolutions(record: &AuditRecord) -> Option<ChartBlock> {
+fn resolutions(record: &AuditRecord) -> Option<Chart> {
     if record.resolutions.len() < 2 {
         return None;
     }
@@ -84,7 +78,8 @@ fn resolutions(record: &AuditRecord) -> Option<ChartBlock> {
     // The record holds the exponent; where its line runs is told by the same fit.
     aliasing.fit = record.rate.and(fit_rate(&points, record.confidence)).map(|rate| {
         let at = |x: f64| (x, (rate.intercept + rate.slope.value * x.ln()).exp());
-        [at(rate.range.0), at(rate.range.1)]
+        let text = record.rate.map_or(String::new(), |r| format!("power {:.2}", r.value).replace('-', "\u{2212}"));
+        Fit { ends: [at(rate.range.0), at(rate.range.1)], text }
     });
     let told = record.rate.map_or(String::new(), |r| {
         format!(
@@ -97,19 +92,24 @@ fn resolutions(record: &AuditRecord) -> Option<ChartBlock> {
     });
     let mut rules = limit(record);
     if let Some(e) = record.infinite.rms.filter(|e| e.value > 0.0) {
-        rules.push((e.value, format!("at infinite resolution {}", percent(e.value))));
+        rules.push(Rule { value: e.value, name: format!("at infinite resolution {}", percent(e.value)) });
     }
     let caption = format!("What more pixels do, and what they cannot mend.{told}");
-    let chart = Chart {
-        name: "Error against resolution".into(),
-        x: Axis::Log(Unit::Count),
-        y: Axis::Log(Unit::Percent),
-        x_title: "resolution, pixels along the top's edge".into(),
-        y_title: "error".into(),
+    Some(Chart {
+        stem: "resolution".into(),
+        title: "Error against resolution".into(),
+        caption,
+        x: Axis {
+            title: "resolution, pixels along the top's edge".into(),
+            column: "resolution".into(),
+            unit: Unit::Count,
+            scale: Scale::Log,
+        },
+        y: errors("error", "error", Scale::Log),
         series: vec![error, aliasing],
         rules,
-    };
-    block("resolution", caption, &chart)
+        more: Vec::new(),
+    })
 }
 
 /// The class of a number of pixels.
@@ -118,16 +118,39 @@ fn class_of(pixels: f64) -> usize {
 }
 
 /// Hemi-cube over exact value for every receiver of the first source.
-fn ratios(record: &AuditRecord) -> Option<ChartBlock> {
+fn ratios(record: &AuditRecord) -> Option<Chart> {
     let source = record.sources.first()?;
     let seeing = || record.views.iter().filter(|v| v.point > 0.0);
     let mut series: Vec<Series> = (COVERED.iter().enumerate())
-        .map(|(k, c)| Series { name: c.1.into(), class: format!("p{k}"), ..Series::default() })
+        .map(|(k, c)| Series {
+            name: c.1.into(),
+            paint: Paint::Pixels(k),
+            dashed: false,
+            shape: Shape::Dots,
+            dots: Vec::new(),
+            fit: None,
+        })
         .collect();
     for v in seeing() {
         let ratio = v.cube / v.point;
-        let hint = format!("patch {} on {}: {}", v.patch, v.surface, significant(ratio, 3));
-        let dot = Dot { x: v.distance, y: ratio.min(TOP_RATIO), interval: None, label: None, hint };
+        let hint = format!(
+            "{} at {} m: patch {} on {}, {} pixels covered",
+            significant(ratio, 3),
+            significant(v.distance, 3),
+            v.patch,
+            v.surface,
+            significant(v.pixels, 3)
+        );
+        let number = |x| Cell::Number(Some(x), Unit::Plain);
+        let more = vec![
+            Cell::Text(v.patch.to_string()),
+            Cell::Text(v.surface.clone()),
+            number(v.pixels),
+            number(v.cube),
+            number(v.point),
+            number(ratio),
+        ];
+        let dot = Dot { x: v.distance, y: ratio.min(TOP_RATIO), hint, more, ..Dot::default() };
         series[class_of(v.pixels)].dots.push(dot);
     }
     let above = seeing().filter(|v| v.cube / v.point > TOP_RATIO).count();
@@ -148,20 +171,39 @@ fn ratios(record: &AuditRecord) -> Option<ChartBlock> {
     if unseen > 0 {
         caption += &format!(" {} more count it and do not see it.", count(unseen));
     }
-    let chart = Chart {
-        name: "Counted over exact, against distance".into(),
-        x: Axis::Log(Unit::Plain),
-        y: Axis::Linear { low: 0.0, high, step: if high > 2.0 { 0.5 } else { 0.25 }, unit: Unit::Plain },
-        x_title: "distance from the middle of the source, m".into(),
-        y_title: "hemi-cube / exact".into(),
+    Some(Chart {
+        stem: "ratio".into(),
+        title: "Counted over exact, against distance".into(),
+        caption,
+        x: Axis {
+            title: "distance from the middle of the source, m".into(),
+            column: "distance".into(),
+            unit: Unit::Plain,
+            scale: Scale::Log,
+        },
+        y: Axis {
+            title: "hemi-cube / exact".into(),
+            column: "drawn_ratio".into(),
+            unit: Unit::Plain,
+            scale: Scale::Linear { low: 0.0, high, step: if high > 2.0 { 0.5 } else { 0.25 } },
+        },
         series,
-        rules: vec![(1.0, String::new())],
-    };
-    block("ratio", caption, &chart)
+        rules: vec![Rule { value: 1.0, name: String::new() }],
+        more: [
+            ("patch", "patch"),
+            ("surface", "surface"),
+            ("pixels", "pixels covered"),
+            ("hemicube", "hemi-cube"),
+            ("exact", "exact"),
+            ("ratio", "hemi-cube / exact"),
+        ]
+        .map(|(column, words)| (column.into(), words))
+        .to_vec(),
+    })
 }
 
 /// Both under rotation about the normal.
-fn rotations(record: &AuditRecord) -> Option<ChartBlock> {
+fn rotations(record: &AuditRecord) -> Option<Chart> {
     if record.rotations.len() < 2 {
         return None;
     }
@@ -178,26 +220,24 @@ fn rotations(record: &AuditRecord) -> Option<ChartBlock> {
         percent(least),
         percent(most)
     );
-    let step = step(1.1 * high);
-    let chart = Chart {
-        name: "Error under rotation".into(),
-        x: Axis::Linear { low: 0.0, high: 90.0, step: 15.0, unit: Unit::Plain },
-        y: Axis::Linear { low: 0.0, high: step * (1.1 * high / step).ceil(), step, unit: Unit::Percent },
-        x_title: "rotation, degrees".into(),
-        y_title: "error".into(),
+    Some(Chart {
+        stem: "rotation".into(),
+        title: "Error under rotation".into(),
+        caption,
+        x: Axis {
+            title: "rotation, degrees".into(),
+            column: "degrees".into(),
+            unit: Unit::Plain,
+            scale: Scale::Linear { low: 0.0, high: 90.0, step: 15.0 },
+        },
+        y: errors("error", "error", Scale::up_to(high)),
         series: series.to_vec(),
         rules: limit(record),
-    };
-    block("rotation", caption, &chart)
+        more: Vec::new(),
+    })
 }
 
 fn spread(all: &[At]) -> (f64, f64) {
     let values = || all.iter().filter_map(|a| a.wrong.rms).map(|e| e.value);
     (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max))
-}
-
-/// A round step of which about four make up `high`.
-fn step(high: f64) -> f64 {
-    let power = 10f64.powf((high / 4.0).log10().floor());
-    power * [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= high / 4.0).unwrap_or(10.0)
 }

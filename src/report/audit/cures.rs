@@ -1,11 +1,10 @@
 //! What would mend it: every cure that was run, by its cost. All of this depends on the clock.
 
-use super::chart::{Axis, Chart, Dot, Series};
-use super::charts::ChartBlock;
+use super::charts::{errors, limit};
 use super::page::{Number, number};
 use crate::audit::Cure;
-use crate::report::curves::axis::Unit;
-use crate::report::format::{count, percent, percent_exact, significant};
+use crate::report::chart::{Axis, Block, Cell, Chart, Dot, Paint, Scale, Series, Shape, Unit};
+use crate::report::format::{count, percent, percent_estimate, significant};
 use crate::report::html::context::{class, minus};
 use crate::study::audit::{AuditRecord, CureRun};
 use serde::Serialize;
@@ -19,7 +18,7 @@ pub(super) struct Cures {
     /// Names of the sources that have a column each.
     pub sources: Vec<String>,
     pub rows: Vec<CureRow>,
-    pub chart: Option<ChartBlock>,
+    pub chart: Option<Block>,
     /// True where nothing was replaced by closed forms: then no points of exact visibility.
     pub any_points: bool,
 }
@@ -95,26 +94,49 @@ fn tag(cure: &Cure) -> String {
 }
 
 /// Error against seconds.
-fn chart(record: &AuditRecord) -> Option<ChartBlock> {
+fn chart(record: &AuditRecord) -> Option<Block> {
     let dot = |c: &CureRun| {
         let e = c.wrong.rms.filter(|e| e.value > 0.0)?;
-        let hint = format!("{}: {} in {} s", c.words, percent(e.value), significant(c.seconds, 3));
-        Some(Dot { x: c.seconds, y: e.value, interval: Some((e.low, e.high)), label: Some(tag(&c.cure)), hint })
+        let shown = percent_estimate(&e, false);
+        let within = shown.interval.map_or(String::new(), |i| format!(" ({i})"));
+        let cost = |n: usize| Cell::Number(Some(n as f64), Unit::Count);
+        Some(Dot {
+            x: c.seconds,
+            y: e.value,
+            std_err: e.std_err,
+            interval: Some((e.low, e.high)),
+            label: Some(tag(&c.cure)),
+            hint: format!("{}{within} in {} s: {}", shown.value, significant(c.seconds, 3), c.words),
+            more: vec![Cell::Text(c.words.clone()), cost(c.hemicubes), cost(c.pixels as usize), cost(c.points)],
+            ..Dot::default()
+        })
     };
     let of = |plain: bool| record.cures.iter().filter(move |c| (c.cure == Cure::None) == plain).filter_map(dot);
-    let series = |class: &str, dots| Series { class: class.into(), dots, ..Series::default() };
-    let chart = Chart {
-        name: "Error against cost".into(),
-        x: Axis::Log(Unit::Plain),
-        y: Axis::Log(Unit::Percent),
-        x_title: "seconds for the form factors".into(),
-        y_title: "error of reflected light (eq. 7)".into(),
-        series: vec![series("k1", of(true).collect()), series("k0", of(false).collect())],
-        rules: record.limit.map(|l| (l, format!("limit {}", percent_exact(l)))).into_iter().collect(),
+    let series = |name: &str, k, dots| Series {
+        name: name.into(),
+        paint: Paint::Method(k),
+        dashed: false,
+        shape: Shape::Dots,
+        dots,
+        fit: None,
     };
-    let caption =
-        "Every dot is a run of the mended solver, judged like the hemi-cube itself; bars are the intervals. Lower \
-                   is better, further left is cheaper."
-            .into();
-    Some(ChartBlock { id: "cures", title: chart.name.clone(), caption, svg: chart.svg()?, legend: Vec::new() })
+    let caption = "Every dot is a run of the mended solver, judged like the hemi-cube itself; bars are the intervals. \
+                   Lower is better, further left is cheaper.";
+    Block::of(&Chart {
+        stem: "cures".into(),
+        title: "Error against cost".into(),
+        caption: caption.into(),
+        x: Axis {
+            title: "seconds for the form factors".into(),
+            column: "seconds".into(),
+            unit: Unit::Plain,
+            scale: Scale::Log,
+        },
+        y: errors("error of reflected light (eq. 7)", "error", Scale::Log),
+        series: vec![series("as it is", 1, of(true).collect()), series("mended", 0, of(false).collect())],
+        rules: limit(record),
+        more: [("cure", "what is done"), ("hemicubes", "hemi-cubes"), ("pixels", "pixels"), ("points", "exact points")]
+            .map(|(column, words)| (column.into(), words))
+            .to_vec(),
+    })
 }

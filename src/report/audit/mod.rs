@@ -1,6 +1,5 @@
 //! An audit of hemi-cubes as a page: the verdict, what it means, why, where, and what would mend it.
 
-mod chart;
 mod charts;
 mod cures;
 mod maps;
@@ -62,6 +61,7 @@ pub fn audit_files(record: &AuditRecord, extras: &AuditExtras) -> Result<Vec<Art
     let pictures = of_maps.chain(of_cubes).map(encode).collect::<Result<Vec<_>, _>>()?;
     let page = page::Page::new(record, extras, &maps);
     let mut files = vec![Artifact::new(AUDIT_PAGE, page::render(&page, &pictures)?)];
+    files.extend(page.chart_files());
     files.extend(pictures);
     Ok(files)
 }

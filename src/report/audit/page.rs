@@ -1,12 +1,13 @@
 //! Everything the page says, as ready strings.
 
 use super::AuditExtras;
-use super::charts::{ChartBlock, charts};
+use super::charts::charts;
 use super::cures::{Cures, cures};
 use super::maps::MapView;
 use super::sources::{SourceRow, rows};
 use crate::audit::Cause;
 use crate::metrics::Verdict;
+use crate::report::chart::{self, Block, Library};
 use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
 use crate::report::html::context::{class, minus};
 use crate::report::{Artifact, ReportError};
@@ -19,7 +20,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The page and what it is put together from.
-const TEMPLATES: [(&str, &str); 7] = [
+const TEMPLATES: [(&str, &str); 9] = [
     ("audit.html", include_str!("page/audit.html.j2")),
     ("why.html", include_str!("page/why.html.j2")),
     ("mends.html", include_str!("page/mends.html.j2")),
@@ -27,6 +28,8 @@ const TEMPLATES: [(&str, &str); 7] = [
     ("audit.css", include_str!("page/audit.css")),
     ("style.css", include_str!("../html/page/style.css")),
     ("macros.html", include_str!("../html/page/macros.html.j2")),
+    chart::TEMPLATE,
+    chart::STYLE,
 ];
 
 /// Where nothing is known.
@@ -73,7 +76,7 @@ pub(super) struct Page<'a> {
     is_shooter: bool,
     limit: Option<String>,
     cures: Option<Cures>,
-    charts: Vec<ChartBlock>,
+    charts: Vec<Block>,
     views: &'a [MapView],
     pictures: Vec<(&'a str, String)>,
     read: Vec<(&'static str, &'static str)>,
@@ -167,6 +170,17 @@ impl<'a> Page<'a> {
                 .collect(),
             program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
         }
+    }
+}
+
+impl Page<'_> {
+    fn all_charts(&self) -> impl Iterator<Item = &Block> {
+        self.charts.iter().chain(self.cures.as_ref().and_then(|c| c.chart.as_ref()))
+    }
+
+    /// Drawings and tables of its charts.
+    pub(super) fn chart_files(&self) -> Vec<Artifact> {
+        chart::files(self.all_charts())
     }
 }
 
@@ -335,5 +349,6 @@ pub(super) fn render(page: &Page, pictures: &[Artifact]) -> Result<String, Repor
     for (name, text) in TEMPLATES {
         env.add_template(name, text)?;
     }
-    Ok(env.get_template("audit.html")?.render(context! { page, uris })?)
+    let library = Library::for_charts(page.all_charts().next().is_some());
+    Ok(env.get_template("audit.html")?.render(context! { page, uris, library })?)
 }

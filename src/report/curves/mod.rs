@@ -1,10 +1,8 @@
 //! Curves as tables, drawings and a page: of a run, of a refinement of the mesh, of two runs overlaid.
 
-pub(super) mod axis;
 mod figures;
 mod page;
 mod pictures;
-mod plot;
 mod summary;
 mod table;
 #[cfg(test)]
@@ -128,7 +126,7 @@ fn files(
     page: String,
 ) -> Result<Vec<Artifact>, ReportError> {
     let mut out = tables;
-    out.extend(figures.iter().map(|f| Artifact::new(f.file.clone(), f.svg.clone())));
+    out.extend(super::chart::files(figures.iter().map(|f| &f.chart)));
     out.push(Artifact::new(CURVES_PAGE, page));
     if !about.timing.is_empty() {
         out.push(timing_file(&about.timing)?);

@@ -1,10 +1,10 @@
 //! The page: drawings inline, tables, settings; what the clock says in one marked block.
 
 use super::figures::{Drawing, edits};
-use super::plot::slope_text;
-use super::words::{cost, metric_name, metric_short, noise_word, state_name};
+use super::words::{cost, metric_name, metric_short, noise_word, slope_text, state_name};
 use super::{About, CurvesReport, DifferenceReport, Film, MeshReport};
 use crate::metrics::FLOOR_FACTOR;
+use crate::report::chart::{self, Block, Library};
 use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
 use crate::report::{ReportError, scene3d};
 use crate::study::converge::{At, Axis, Difference, ReachedRow, mesh_rate};
@@ -12,8 +12,12 @@ use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
 use serde::Serialize;
 
 /// The page and what it is put together from.
-const TEMPLATES: [(&str, &str); 2] =
-    [("curves.html", include_str!("page/curves.html.j2")), ("style.css", include_str!("../html/page/style.css"))];
+const TEMPLATES: [(&str, &str); 4] = [
+    ("curves.html", include_str!("page/curves.html.j2")),
+    ("style.css", include_str!("../html/page/style.css")),
+    chart::TEMPLATE,
+    chart::STYLE,
+];
 /// What is not known.
 const NONE: &str = "\u{2013}";
 
@@ -37,7 +41,7 @@ struct Page<'a> {
 #[derive(Debug, Default, Serialize)]
 struct Section<'a> {
     title: String,
-    figures: Vec<&'a str>,
+    figures: Vec<&'a Block>,
     tables: Vec<Table>,
     /// Rows of (picture, caption).
     pictures: Vec<Vec<(String, &'a str)>>,
@@ -81,11 +85,13 @@ fn render(page: &Page, viewer: Option<&Film>) -> Result<String, ReportError> {
     for (name, text) in TEMPLATES.into_iter().chain(scene3d::TEMPLATES) {
         env.add_template(name, text)?;
     }
-    Ok(env.get_template("curves.html")?.render(context! { page, viewer })?)
+    let drawn = page.sections.iter().chain(&page.clock).any(|s| !s.figures.is_empty());
+    let library = Library::for_charts(drawn);
+    Ok(env.get_template("curves.html")?.render(context! { page, viewer, library })?)
 }
 
-fn drawn(figures: &[Drawing], edit: usize, clock: bool) -> Vec<&str> {
-    figures.iter().filter(|f| f.edit == edit && f.is_clock == clock).map(|f| f.svg.as_str()).collect()
+fn drawn(figures: &[Drawing], edit: usize, clock: bool) -> Vec<&Block> {
+    figures.iter().filter(|f| f.edit == edit && f.is_clock == clock).map(|f| &f.chart).collect()
 }
 
 fn headed(words: &[&str]) -> Vec<String> {

@@ -1,8 +1,8 @@
 //! What the terminal and programs are told.
 
 use super::figures::edits;
-use super::plot::slope_text;
-use super::words::{cost, metric_short, noise_word, state_name};
+
+use super::words::{cost, metric_short, noise_word, slope_text, state_name};
 use super::{CurvesReport, DifferenceReport, MeshReport};
 use crate::metrics::Rate;
 use crate::report::format::{percent_estimate, percent_exact, printable, significant};

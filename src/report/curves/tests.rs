@@ -1,5 +1,6 @@
 use super::testing::{curve, report};
 use super::*;
+use crate::report::chart::testing::without_library;
 use crate::study::converge::{MeshPoint, MeshSize, diff};
 
 fn page(files: &[Artifact]) -> String {
@@ -17,7 +18,7 @@ fn a_run_has_its_tables_drawings_and_page() {
         .into_iter()
         .map(String::from)
         .chain(["rms", "top1"].iter().flat_map(|m| ["shots", "rays", "seconds"].map(|a| format!("{m}-{a}-edit-1"))))
-        .map(|n| n + ".svg")
+        .flat_map(|n| [format!("{n}.svg"), format!("{n}.csv")])
         .collect();
     known.extend(drawings.iter().map(String::as_str));
     known.sort_unstable();
@@ -27,7 +28,7 @@ fn a_run_has_its_tables_drawings_and_page() {
         assert!(page.contains(std::str::from_utf8(&svg.bytes).expect("text").trim_end()), "{}", svg.name);
     }
     assert!(page.contains("a room &lt;with&gt;") && !page.contains("<with>"));
-    let outside = page.replace("http://www.w3.org/2000/svg", "");
+    let outside = without_library(&page);
     assert!(!outside.contains("http:") && !outside.contains("https:"), "asks for something from outside");
 }
 
@@ -84,9 +85,48 @@ fn a_refinement_states_its_order() {
     let report = MeshReport { about: report().about, curves };
     let files = mesh_files(&report).expect("files");
     let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
-    assert_eq!(names, ["refine.csv", "orders.csv", "rms-size.svg", "index.html", "timing.json"]);
+    assert_eq!(names, ["refine.csv", "orders.csv", "rms-size.svg", "rms-size.csv", "index.html", "timing.json"]);
     assert!(mesh_text(&report).contains("order 2.00"), "{}", mesh_text(&report));
     assert!(
         (mesh_json(&report)["curves"][0]["order"]["slope"]["value"].as_f64().expect("a number") - 2.0).abs() < 1e-9
     );
+}
+
+/// Each drawing's table holds the numbers of the run, to the bit.
+#[test]
+fn a_drawings_table_holds_the_numbers_of_the_run() {
+    let report = report();
+    let files = convergence_files(&report).expect("files");
+    let table = files.iter().find(|f| f.name == "rms-shots-edit-1.csv").expect("a table");
+    let mut read = csv::Reader::from_reader(table.bytes.as_slice());
+    assert_eq!(
+        read.headers().expect("a head").iter().collect::<Vec<_>>().join(","),
+        "series,shots_since_edit,rms,rms_std_err,rms_low,rms_high,rays_since_edit,noise_floor"
+    );
+    let rows: Vec<csv::StringRecord> = read.records().map(|r| r.expect("a row")).collect();
+    let points =
+        report.curves.iter().filter(|c| c.edit == 1).flat_map(|c| c.points.iter().map(move |p| (&c.method, p)));
+    let wanted: Vec<_> = points.collect();
+    assert_eq!(rows.len(), wanted.len());
+    for (row, (method, p)) in rows.iter().zip(wanted) {
+        let (e, read) = (p.rms.expect("an error"), |k: usize| row[k].parse::<f64>().expect("a number"));
+        assert_eq!((&row[0], read(1), read(2)), (method.as_str(), p.shots_since_edit as f64, e.value));
+        assert_eq!((read(3), read(4), read(5)), (e.std_err.expect("an error"), e.low, e.high));
+        assert_eq!((read(6), read(7)), (p.rays_since_edit as f64, p.noise_floor.expect("a floor")));
+    }
+}
+
+/// The page's script is told what the drawing shows, and seconds only where the clock is spoken of.
+#[test]
+fn what_is_pointed_at_says_error_interval_and_costs() {
+    let page = page(&convergence_files(&report()).expect("files"));
+    let of = |stem: &str| {
+        let from = page.find(&format!("id=\"{stem}\"")).expect("a chart");
+        let data = &page[from + page[from..].find("<script type=\"application/json\">").expect("data") + 32..];
+        serde_json::from_str::<serde_json::Value>(&data[..data.find("</script>").expect("an end")]).expect("json")
+    };
+    let shots = of("rms-shots-edit-0");
+    let text = |v: &serde_json::Value| v["series"][0]["text"][2].as_str().expect("text").to_string();
+    assert_eq!(text(&shots), "5.00\u{202f}% (4.85 to 5.15\u{202f}%) at 20 shots, 1,280 rays");
+    assert!(text(&of("rms-seconds-edit-0")).ends_with("at 0.200 s, 20 shots, 1,280 rays"));
 }

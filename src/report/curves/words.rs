@@ -1,6 +1,6 @@
 //! How states, errors and costs are called.
 
-use crate::metrics::Reached;
+use crate::metrics::{Rate, Reached};
 use crate::report::format::{count, significant};
 use crate::study::converge::{Axis, Metric, Noise};
 
@@ -46,4 +46,11 @@ pub(super) fn cost(reached: Reached, axis: Axis) -> String {
         (Some(x), Some(y)) if x == y => text(x),
         (Some(x), Some(y)) => format!("{} ({})", text(x), text(y)),
     }
+}
+
+/// A slope with its interval: `-1.02 (-1.10 to -0.94)`.
+pub(super) fn slope_text(rate: &Rate) -> String {
+    let s = &rate.slope;
+    let places = if s.high - s.low < 0.02 { 4 } else { 2 };
+    format!("{:.places$} ({:.places$} to {:.places$})", s.value, s.low, s.high).replace('-', "\u{2212}")
 }

@@ -1,7 +1,8 @@
 //! Everything the page says, as ready strings: what the template gets.
 
 use super::bars::{Bar, axis_end, bar};
-use super::charts::{Chart, charts};
+use super::budget::{Budget, budget};
+use super::charts::charts;
 use super::findings::{FindingRow, finding_rows};
 use super::groups::{GroupTable, group_tables};
 use super::pictures::{ViewBlock, view_block};
@@ -10,6 +11,7 @@ use super::settings::{SettingGroup, settings};
 use super::sources::{Card, cards};
 use crate::metrics::Verdict;
 use crate::report::asked::Level;
+use crate::report::chart::Block;
 use crate::report::figures::ViewFigures;
 use crate::report::format::{confidence, count, significant};
 use crate::report::lines::worst_title;
@@ -33,7 +35,8 @@ pub(super) struct Page {
     pub views: Vec<ViewBlock>,
     pub worst: Worst,
     pub groups: Vec<GroupTable>,
-    pub charts: Vec<Chart>,
+    pub budget: Option<Budget>,
+    pub charts: Vec<Block>,
     pub sources: Vec<Card>,
     pub findings: Vec<FindingRow>,
     pub notices: Vec<String>,
@@ -126,6 +129,7 @@ impl Page {
             views: views.iter().map(view_block).collect(),
             worst: worst(record, views),
             groups: group_tables(record),
+            budget: budget(record),
             charts: charts(record),
             sources: cards(record),
             findings: finding_rows(record),
@@ -136,6 +140,13 @@ impl Page {
             timing: timing.iter().map(|p| pair(&p.name, format!("{} s", significant(p.seconds, 3)))).collect(),
             program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
         }
+    }
+}
+
+impl Page {
+    /// Every chart of the page.
+    pub(super) fn all_charts(&self) -> impl Iterator<Item = &Block> {
+        self.charts.iter().chain(self.budget.as_ref().and_then(|b| b.chart.as_ref()))
     }
 }
 

@@ -1,6 +1,7 @@
 //! One self-contained page: no network, no fonts, nothing but the file.
 
 mod bars;
+mod budget;
 mod charts;
 pub(super) mod context;
 mod findings;
@@ -11,6 +12,7 @@ mod settings;
 mod sources;
 
 use super::artifact::check_shape;
+use super::chart;
 use super::figures::{ViewFigures, figures};
 use super::json::{record_file, timing_file};
 use super::layers::exr_layers;
@@ -29,7 +31,7 @@ use std::collections::BTreeMap;
 pub const PAGE_NAME: &str = "report.html";
 
 /// The page and what it is put together from.
-const TEMPLATES: [(&str, &str); 8] = [
+const TEMPLATES: [(&str, &str); 11] = [
     ("page.html", include_str!("page/page.html.j2")),
     ("style.css", include_str!("page/style.css")),
     ("macros.html", include_str!("page/macros.html.j2")),
@@ -38,6 +40,9 @@ const TEMPLATES: [(&str, &str); 8] = [
     ("where.html", include_str!("page/where.html.j2")),
     ("why.html", include_str!("page/why.html.j2")),
     ("how.html", include_str!("page/how.html.j2")),
+    ("budget.html", include_str!("page/budget.html.j2")),
+    chart::TEMPLATE,
+    chart::STYLE,
 ];
 
 /// The report folder: the page, the finished record as `record.json`, each picture as PNG, each view as EXR; `timing.json`
@@ -56,6 +61,7 @@ impl Exporter for HtmlReport {
         if !extras.timing.is_empty() {
             files.push(timing_file(extras.timing)?);
         }
+        files.extend(chart::files(page.all_charts()));
         files.extend(pictures);
         for (view, shown) in extras.views.iter().zip(&views) {
             files.push(Artifact::new(format!("{}.exr", shown.stem), exr_layers(record, &view.visibility)?));
@@ -93,7 +99,8 @@ fn render(page: &Page, pictures: &[Artifact], viewer: Option<&Parts>) -> Result<
     for (name, text) in TEMPLATES.into_iter().chain(scene3d::TEMPLATES) {
         env.add_template(name, text)?;
     }
-    Ok(env.get_template("page.html")?.render(context! { page, uris, viewer })?)
+    let library = chart::Library::for_charts(page.all_charts().next().is_some());
+    Ok(env.get_template("page.html")?.render(context! { page, uris, viewer, library })?)
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@ use crate::metrics::Verdict;
 use crate::render::testing::{room, tracer};
 use crate::render::{View, views};
 use crate::report::Phase;
-use crate::report::testing::{record, with_verdict};
+use crate::report::chart::testing::without_library;
+use crate::report::testing::{record, with_split, with_verdict};
 
 fn seen() -> Vec<View> {
     let stage = room();
@@ -26,7 +27,9 @@ fn the_pages_data() {
         ".views[].figures[].bar.stops" => "[colours]",
         ".views[].figures[].marks" => "[marks]",
         ".worst.rows[1:]" => "[more]",
-        ".charts[].bars[2:]" => "[more]",
+        ".charts[].svg" => "[drawing]",
+        ".charts[].data" => "[data]",
+        ".charts[].rows[2:]" => "[more]",
     });
 }
 
@@ -40,6 +43,10 @@ fn the_folder_holds_page_data_pictures_and_layers() {
         "report.html",
         "record.json",
         "timing.json",
+        "errors.svg",
+        "errors.csv",
+        "noise.svg",
+        "noise.csv",
         "main-reference.png",
         "main-candidate.png",
         "main-difference.png",
@@ -51,8 +58,8 @@ fn the_folder_holds_page_data_pictures_and_layers() {
         "main.exr",
     ];
     assert_eq!(names, expected);
-    assert_eq!(&files[3].bytes[..4], b"\x89PNG");
-    assert_eq!(&files[11].bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
+    assert_eq!(&files[7].bytes[..4], b"\x89PNG");
+    assert_eq!(&files[15].bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
     let data: serde_json::Value = serde_json::from_slice(&files[1].bytes).expect("json");
     assert_eq!(data["format"], "etalon-record/1");
     assert_eq!(data["comparison"]["rms"]["value"], 0.013412);
@@ -110,7 +117,7 @@ fn the_pages_data_follow_the_record() {
     let bins = &mut breakdown.errors.as_mut().expect("errors").bins;
     let fullest = (0..bins.len()).max_by(|a, b| bins[*a].total_cmp(&bins[*b])).expect("bins");
     bins.swap(fullest, fullest + 1);
-    assert_ne!(whole["charts"][0]["bars"], data(&other)["charts"][0]["bars"]);
+    assert_ne!(whole["charts"][0]["data"], data(&other)["charts"][0]["data"]);
     assert_eq!(whole["charts"][1], data(&other)["charts"][1]);
 }
 
@@ -128,6 +135,7 @@ fn no_findings_reads_none_and_no_noise_draws_no_noise() {
     r.breakdown = None;
     let html = page(&r, &Extras::default());
     assert!(!html.contains("By surface") && !html.contains(">Why<"));
+    assert!(!html.contains("Plotly") && html.len() < 200_000, "a page without charts carries no library");
 }
 
 #[test]
@@ -162,19 +170,21 @@ fn whatever_a_scene_is_called_stays_text() {
     assert!(!html.contains("<script>alert"), "an unescaped name");
     assert!(html.contains("&lt;script&gt;alert(1)"));
     assert!(html.contains("{{ 7 * 7 }}") || html.contains("{{ 7 * 7 }}".replace(' ', "&#x20;").as_str()));
-    // The page's own, and of the scene to turn: data, library, program.
-    assert_eq!(html.matches("<script").count(), 4);
+    // The page's own script, the charts' library and what calls it, the data of two charts; and of the scene to turn: data,
+    // library, program.
+    let ours = without_library(&html);
+    assert_eq!((ours.matches("<script>").count(), ours.matches("<script").count()), (5, 8));
 }
 
 #[test]
 fn the_page_asks_for_nothing_from_outside() {
     let views = seen();
-    let whole = page(&record(), &Extras { views: &views, timing: &[] });
+    let html = page(&record(), &Extras { views: &views, timing: &[] });
     // The library names an address of XML, which is none of the network.
-    let html = whole.replace(scene3d::LIBRARY, "");
-    assert!(html.len() + scene3d::LIBRARY.len() == whole.len() && whole.len() < 6_000_000);
+    let ours = without_library(&html).replace(scene3d::LIBRARY, "");
+    assert!(ours.len() + scene3d::LIBRARY.len() < html.len() && html.len() < 6_000_000);
     for outside in ["http://", "https://", "src=\"/", "@import", "url(http", "<link"] {
-        assert!(!html.contains(outside), "{outside}");
+        assert!(!ours.contains(outside), "{outside}");
     }
     assert_eq!(html.matches("data:image/png;base64,").count(), 8);
 }
@@ -224,4 +234,17 @@ fn only_the_marked_block_depends_on_the_clock() {
     };
     assert_ne!(fast[0], slow[0]);
     assert_eq!(apart(&fast), apart(&slow));
+}
+
+#[test]
+fn a_split_is_a_table_and_a_chart_with_intervals() {
+    let files = HtmlReport.export(&with_split(), &Extras::default()).expect("report");
+    let html = String::from_utf8(files[0].bytes.clone()).expect("utf-8");
+    let from = html.find("Where the error comes from").expect("a section");
+    let section = &html[from..html.find("Errors and noise").expect("the next")];
+    let row = "<span class=\"big\">1.10\u{202f}%</span><small>1.00 to 1.20\u{202f}%</small></td>\n<td class=\"num\">+0.400\u{202f}%";
+    assert!(section.contains(row) && section.contains("data-chart"), "{section}");
+    assert!(section.contains("0.213\u{202f}% of the squared difference"));
+    assert!(files.iter().any(|f| f.name == "budget.svg") && files.iter().any(|f| f.name == "budget.csv"));
+    assert!(!page(&record(), &Extras::default()).contains("Where the error comes from"));
 }
