@@ -113,7 +113,7 @@ fn verdicts_until_decided(rays: u64, most: u64, rms: f64, series: u64) -> ([f64;
             let truth = Truth::Sampled(reference.patches);
             let comparison = compare(&solution, &truth, None, &judged, confidence, false)?;
             let decision = Some(decide(&comparison.measured(&limits)));
-            let judgement = Judgement { comparison, decision };
+            let judgement = Judgement { comparison, decision, as_seen: None };
             Ok(Some(Seen { judgement, rays_per_patch: cast as u64, relative_error: 0.0 }))
         });
         let decided = decided.expect("comparable").expect("a look");
