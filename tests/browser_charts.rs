@@ -185,7 +185,9 @@ fn a_report_draws_its_histograms_and_its_budget() {
     etalon(place.path(), "check sol.csv --reference ref --form-factors ff.npz --max-rms 90% --report rep");
     browser.open(&place.path().join("rep/report.html"));
     browser.settle();
-    let bars = |stem: &str| browser.value(&format!("document.querySelectorAll('#{stem} .bars path').length")).as_u64();
+    let bars = |stem: &str| {
+        browser.value(&format!("document.querySelectorAll('#{stem} .barlayer .point path').length")).as_u64()
+    };
     assert!(bars("errors") > Some(1) && bars("noise") > Some(1), "{:?} {:?}", bars("errors"), bars("noise"));
     let rows =
         std::fs::read_to_string(place.path().join("rep/budget.csv")).expect("a table").lines().count() as u64 - 1;
