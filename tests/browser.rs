@@ -75,6 +75,13 @@ fn opened(page: &Path) -> Option<Browser> {
 
 fn in_sight(b: &Browser) {
     b.run("document.getElementById('viewer').scrollIntoView()");
+    still(b);
+}
+
+/// Waits until the scene has been drawn in full: in motion a slow machine shows it coarse.
+fn still(b: &Browser) {
+    b.settle();
+    b.wait("!etalonViewer.coarse");
     b.settle();
 }
 
@@ -190,7 +197,7 @@ fn a_patch_has_the_colour_of_its_number() {
     let wrong = difference(&reference, &solution);
     let scale = Scale::symmetric(&wrong, &record.stage.areas(), 0.0);
     b.run("const box = document.getElementById('viewer-outlines'); if (box.checked) box.click()");
-    b.settle();
+    still(&b);
     let shown = pixels(&b);
     for (patch, point) in seen(&record) {
         let [x, y] = projected(&record, point, [f64::from(shown.width()), f64::from(shown.height())]);
@@ -280,7 +287,7 @@ fn layers_ranges_and_the_divider_change_what_is_seen() {
     let shop = shop();
     let Some(b) = opened(&shop.page()) else { return };
     let look = || {
-        b.settle();
+        still(&b);
         pixels(&b)
     };
     let mut last = look();
@@ -313,7 +320,7 @@ fn layers_ranges_and_the_divider_change_what_is_seen() {
     let picked = |share: f64| {
         b.run("document.getElementById('viewer-divider').focus()");
         b.keys(if share > 0.5 { "\u{e010}" } else { "\u{e011}" });
-        b.settle();
+        still(&b);
         let hit =
             |k: i32| b.value(&format!("etalonViewer.pick({}, {})", (0.35 + 0.03 * f64::from(k)) * width, 0.6 * height));
         (0..10).filter_map(|k| hit(k).as_u64()).any(|n| gone.contains(&(n as usize)))
@@ -333,7 +340,7 @@ fn a_film_shows_the_steps_of_a_series() {
     let label = "document.getElementById('viewer-step-label').textContent";
     let told = b.value(label);
     b.run(&format!("etalonViewer.step({})", steps - 1));
-    b.settle();
+    still(&b);
     assert!(changed(&first, &pixels(&b)) > 0.1);
     assert_ne!(b.value(label), told);
     b.run("etalonViewer.step(0); document.getElementById('viewer-play').click()");

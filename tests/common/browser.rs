@@ -210,6 +210,7 @@ fn capabilities(switches: &[&str]) -> Value {
     json!({ "capabilities": { "alwaysMatch": {
         "goog:chromeOptions": { "args": arguments },
         "goog:loggingPrefs": { "browser": "ALL", "performance": "ALL" },
+        "timeouts": { "pageLoad": 40_000, "script": 40_000 },
         "unhandledPromptBehavior": "ignore"
     } } })
 }
