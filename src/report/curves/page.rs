@@ -6,6 +6,7 @@ use super::{About, CurvesReport, DifferenceReport, Film, MeshReport};
 use crate::metrics::FLOOR_FACTOR;
 use crate::report::chart::{self, Block, Library};
 use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
+use crate::report::html::context::minus;
 use crate::report::{ReportError, scene3d};
 use crate::study::converge::{At, Axis, Difference, ReachedRow, mesh_rate};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
@@ -161,6 +162,7 @@ pub(super) fn of_curves(report: &CurvesReport, figures: &[Drawing]) -> Result<St
         page.clock.extend(Some(clock).filter(|s| !s.is_empty()));
     }
     page.read = reading(&report.about);
+    page.read.extend(report.pictures.first().map(|p| ("Pictures", minus(&p.words))));
     render(&page, report.film.as_ref())
 }
 
