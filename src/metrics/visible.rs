@@ -190,7 +190,7 @@ mod tests {
         );
         let needed = seen.needed.unwrap();
         assert!(needed.everywhere <= least && needed.median >= needed.everywhere);
-        assert_eq!(visible_share(&v, &[0.0, 0.0, 1.0, 0.0], &solution, &[solution.clone()], 0.95), None);
+        assert_eq!(visible_share(&v, &[0.0, 0.0, 1.0, 0.0], &solution, std::slice::from_ref(&solution), 0.95), None);
     }
 
     /// 200 receivers against 400 noisy references each way: a third of them off by 1.3 steps and the rest by 0.7, so that
