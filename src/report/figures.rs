@@ -1,23 +1,25 @@
 //! The pictures of a record: painted, captioned, with the colour bars that belong to them.
 
+mod bar;
+mod fields;
+mod look;
+
+pub use bar::ColourBar;
+pub(super) use bar::{beyond_range, colour_bar};
+pub(super) use fields::{ShownField, Unit, WATTS, shown_fields};
+pub(super) use look::{exposed, exposure};
+
 use super::ReportError;
 use super::artifact::check_shape;
 use super::asked::Level;
-use super::format::{count, round_number, significant};
-use super::tone::tone_words;
-use crate::render::{
-    Exposure, Field, LinearRgb, Mesh, Raster, Scale, Seen, Shade, Stencils, ToneMap, View, Visibility, difference,
-    in_standard_errors, luminance, luminance_std_err, paint_cells, paint_smooth, relative_difference, to_srgb8,
-    vertex_colours,
-};
+use crate::render::{LinearRgb, Mesh, Raster, Stencils, View, Visibility, paint_cells, paint_smooth, vertex_colours};
 use crate::solution::Radiosity;
 use crate::study::Record;
 use crate::view::Response;
+use look::Look;
 
-/// Colours along a drawn bar.
-const BAR_STOPS: usize = 25;
-/// A difference picture in standard errors reaches at least this far: what lies within is no news.
-const LEAST_Z: f64 = 3.0;
+const SMOOTHED: &str = "Interpolated between vertices, as in Cohen and Greenberg (1985): how the solution would be shown. \
+                        Nothing is judged by it.";
 
 /// The pictures through one camera.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +39,8 @@ pub struct ViewFigures {
 /// One picture with its words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// `reference`, `candidate`, `difference`, `relative`, `std_err`, `z`, `steps`, `brils`, `reference-smooth` or `candidate-smooth`.
+    /// `reference`, `candidate`, `difference`, `relative`, `std_err`, `z`, `steps`, `brils`, `reference-smooth` or
+    /// `candidate-smooth`.
     pub kind: &'static str,
     /// Title.
     pub title: &'static str,
@@ -47,17 +50,6 @@ pub struct Figure {
     pub raster: Raster,
     /// The colour bar; `None` for pictures in natural colours.
     pub bar: Option<ColourBar>,
-}
-
-/// A colour bar.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ColourBar {
-    /// Colours at equal steps from left to right, as `#rrggbb`.
-    pub colours: Vec<String>,
-    /// (place in percent, label).
-    pub ticks: Vec<(String, String)>,
-    /// Unit of the labels.
-    pub unit: &'static str,
 }
 
 /// Where one of the worst patches shows in the pictures.
@@ -135,136 +127,6 @@ fn plates(record: &Record, views: &[View], mesh: &Mesh) -> Vec<Plate> {
     all
 }
 
-/// One number per patch that is shown in false colour, with its words and its scale.
-pub(super) struct ShownField {
-    /// `difference`, `relative`, `std_err`, `z`, `steps` or `brils`.
-    pub kind: &'static str,
-    /// Title.
-    pub title: &'static str,
-    /// What is shown, without what the scale leaves out.
-    pub what: String,
-    /// The numbers.
-    pub field: Field,
-    /// Their colours.
-    pub scale: Scale,
-    /// Their unit.
-    pub unit: Unit,
-}
-
-/// What is shown in false colour: the errors of the reference only where there are any, what is seen only where somebody
-/// looks.
-pub(super) fn shown_fields(record: &Record) -> Vec<ShownField> {
-    let (stage, photometry) = (&record.stage, &record.stage.photometry);
-    let areas = stage.areas();
-    let reference = luminance(photometry, &record.reference);
-    let solution = luminance(photometry, &record.solution);
-    let wrong = difference(&reference, &solution);
-    let relative = relative_difference(&reference, &solution);
-    let noise = luminance_std_err(photometry, &record.reference);
-    let z = tested(record)
-        .unwrap_or_else(|| in_standard_errors(&wrong, &noise, &luminance_std_err(photometry, &record.solution)));
-    let shown = |kind, title, what: String, field, scale, unit| ShownField { kind, title, what, field, scale, unit };
-    let scale = Scale::symmetric(&wrong, &areas, 0.0);
-    let mut all = vec![shown("difference", "Signed difference", WRONG.into(), wrong, scale, WATTS)];
-    let scale = Scale::symmetric(&relative, &areas, 0.0);
-    all.push(shown("relative", "Relative difference", RELATIVE.into(), relative, scale, PERCENT));
-    if !noise.is_blank() {
-        let scale = Scale::from_zero(&noise, &areas);
-        all.push(shown("std_err", "Standard error of the reference", NOISE.into(), noise, scale, WATTS));
-        let scale = Scale::symmetric(&z, &areas, LEAST_Z);
-        let what = format!("{IN_ERRORS}{}", beyond(record));
-        all.push(shown("z", "Difference in standard errors", what, z, scale, ERRORS));
-    }
-    if let Some(seen) = &record.as_seen {
-        let viewer = &seen.viewer;
-        let off = |of: &dyn Fn(f64) -> f64| Field {
-            values: reference.iter().zip(&solution).map(|(r, s)| Some(of(*s) - of(*r))).collect(),
-        };
-        let (steps, brils) = (off(&|y| viewer.steps(y)), off(&|y| viewer.brightness(y)));
-        let scale = Scale::symmetric(&steps, &areas, 1.0);
-        all.push(shown("steps", "Difference in display steps", IN_STEPS.into(), steps, scale, STEPS));
-        let scale = Scale::symmetric(&brils, &areas, 0.0);
-        all.push(shown("brils", "Difference in brightness", IN_BRILS.into(), brils, scale, BRILS));
-    }
-    all
-}
-
-/// The scores that were tested, where they are of patches: then picture, histogram and counts agree.
-fn tested(record: &Record) -> Option<Field> {
-    let scores = &record.breakdown.as_ref()?.noise.as_ref()?.scores;
-    let of_patches = Level::of(record) == Level::Patch && scores.len() == record.stage.patch_count();
-    of_patches.then(|| Field { values: scores.clone() })
-}
-
-/// How many lie beyond what chance allows to all of them together.
-fn beyond(record: &Record) -> String {
-    let Some(noise) = record.breakdown.as_ref().and_then(|b| b.noise.as_ref()) else { return String::new() };
-    let (family, nouns) = (&noise.family, Level::of(record).nouns());
-    format!(
-        " {} of {} {nouns} lie beyond {} standard errors, where chance alone would put {}.",
-        count(family.count),
-        count(noise.tested),
-        significant(family.threshold, 3),
-        significant(family.expected, 2)
-    )
-}
-
-/// (unit, what a value is multiplied by for its label).
-pub(super) type Unit = (&'static str, f64);
-pub(super) const WATTS: Unit = ("W/m\u{b2}, luminance", 1.0);
-const PERCENT: Unit = ("% of the reference", 100.0);
-const STEPS: Unit = ("steps of the display, of 255", 1.0);
-const BRILS: Unit = ("brils", 1.0);
-const ERRORS: Unit = ("standard errors", 1.0);
-
-const WRONG: &str = "Solution minus reference: red where the solution is too bright, blue where it is too dark.";
-const RELATIVE: &str = "The same as a share of what the reference has there: errors in dark corners show as clearly as \
-                        those in the light.";
-const IN_STEPS: &str = "By how many steps of the frame buffer the screen shows it wrong: what stays within one cannot \
-                        be seen there.";
-const IN_BRILS: &str = "By how much brighter (red) or darker (blue) it looks to an eye in the scene.";
-const NOISE: &str = "How well the reference itself is known.";
-const SMOOTHED: &str = "Interpolated between vertices, as in Cohen and Greenberg (1985): how the solution would be shown. \
-                        Nothing is judged by it.";
-const IN_ERRORS: &str =
-    "Differences against the noise: what stays within two or three is no evidence of an error in the solution.";
-
-/// How all pictures in natural colours are made, with what is said of it.
-struct Look {
-    shade: Box<dyn Shade>,
-    words: String,
-}
-
-impl Look {
-    /// Through the eye that the record was looked at with, else on one linear scale.
-    fn of(record: &Record, views: &[View], mesh: &Mesh) -> Self {
-        let Some(seen) = &record.as_seen else {
-            let exposure = exposure(record);
-            return Self { words: exposed(&exposure), shade: Box::new(exposure) };
-        };
-        let map = ToneMap::new(seen.viewer.clone(), &record.stage.photometry);
-        let shares = Seen::of(mesh, views.iter().map(|v| &v.visibility)).shares;
-        let clipped = map.clipped(luminance(&record.stage.photometry, &record.reference).into_iter().zip(shares));
-        Self { words: tone_words(&map.viewer, clipped), shade: Box::new(map) }
-    }
-}
-
-/// One exposure for all pictures in natural colours.
-pub(super) fn exposure(record: &Record) -> Exposure {
-    let stage = &record.stage;
-    let is_emitter: Vec<bool> = (0..stage.patch_count()).map(|i| stage.emission(i).iter().any(|e| *e > 0.0)).collect();
-    Exposure::fit(&stage.photometry, &luminance(&stage.photometry, &record.reference), &stage.areas(), &is_emitter)
-}
-
-/// What an exposure does, in a sentence.
-pub(super) fn exposed(exposure: &Exposure) -> String {
-    format!(
-        "One linear scale for both pictures, then the sRGB curve: a luminance of {} W/m\u{b2} is shown white (99 % of \
-         the reflecting area stays below); lamps may burn out.",
-        significant(exposure.white_luminance, 3)
-    )
-}
-
 /// Reference and solution as a camera would show them, one colour a patch.
 fn natural(record: &Record, look: &Look) -> Vec<Plate> {
     let palette = |r: &Radiosity| Fill::Flat((0..r.len()).map(|i| Some(look.shade.display(r.of(i)))).collect());
@@ -314,37 +176,6 @@ fn false_colour(shown: ShownField) -> Plate {
     }
 }
 
-/// What a caption says of values that a scale does not reach.
-pub(super) fn beyond_range(scale: &Scale) -> String {
-    if scale.beyond > 0.0 {
-        let share = significant(100.0 * scale.beyond, 2);
-        format!(" {share} % of the area lies beyond the range and has its end colours.")
-    } else {
-        String::new()
-    }
-}
-
-/// The bar of a scale.
-pub(super) fn colour_bar(scale: &Scale, unit: Unit) -> ColourBar {
-    let tick = |t: &crate::render::Tick| (round_number(100.0 * t.at), label(unit.1 * t.value, scale.low()));
-    ColourBar {
-        colours: scale.stops(BAR_STOPS).into_iter().map(hex).collect(),
-        ticks: scale.ticks().iter().map(tick).collect(),
-        unit: unit.0,
-    }
-}
-
-/// A mark's label; signed on scales that reach below zero.
-fn label(value: f64, low: f64) -> String {
-    let plus = if value > 0.0 && low < 0.0 { "+" } else { "" };
-    format!("{plus}{}", round_number(value))
-}
-
-fn hex(colour: LinearRgb) -> String {
-    let [r, g, b] = colour.map(to_srgb8);
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
 fn marks(record: &Record, visibility: &Visibility) -> Vec<Mark> {
     let level = Level::of(record);
     let numbers: Vec<usize> = record.comparison.worst.iter().map(|w| w.patch).collect();
@@ -373,9 +204,12 @@ pub(super) fn stems(views: &[View]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metrics::AsSeen;
     use crate::render::testing::{room, tracer};
     use crate::render::views;
     use crate::report::testing::record;
+    use crate::stats::Estimate;
+    use crate::view::{Display, Levels, Operator, Surround, Viewer};
 
     #[test]
     fn a_record_has_eight_pictures_and_four_bars() {
@@ -397,6 +231,23 @@ mod tests {
         assert_eq!((bar.ticks[2].0.as_str(), bar.ticks[2].1.as_str()), ("50", "0"));
         assert!(bar.ticks[0].1.starts_with('-') && bar.ticks[4].1.starts_with('+'));
         assert!(!shown[0].marks.is_empty());
+    }
+
+    #[test]
+    fn where_somebody_looks_there_are_steps_and_brils_and_the_pictures_are_the_eyes() {
+        let stage = room();
+        let views = views(&tracer(&stage));
+        let mut r = record();
+        let plain = figures(&r, &views).expect("figures");
+        let levels = Levels { log_mean: 20.0, brightest_surface: 200.0, unseen: 0.0 };
+        let viewer = Viewer::new(Operator::Film, Surround::Dim, Display::crt(), 179.0, levels);
+        let share = Estimate { value: 0.5, std_err: None, low: 0.4, high: 0.6 };
+        r.as_seen = Some(AsSeen { share, worst: None, needed: None, viewer });
+        let seen = figures(&r, &views).expect("figures");
+        let kinds: Vec<_> = seen[0].figures.iter().map(|f| f.kind).collect();
+        assert_eq!((kinds.len(), &kinds[6..8]), (10, &["steps", "brils"][..]));
+        assert_ne!(plain[0].figures[0].raster, seen[0].figures[0].raster);
+        assert!(seen[0].figures[0].caption.contains("as on film") && seen[0].figures[0].caption.contains("crt"));
     }
 
     #[test]
