@@ -110,10 +110,10 @@ fn tones(args: &DisplaySuiteArgs, console: &Console) -> Result<u8, Failure> {
     let suite = display();
     let failed = suite.rows.iter().filter(|r| !r.passed).count();
     let head = ["adapted to", "scene", "screen, exact", "ours", "n, exact", "ours"];
-    let mut text = head.map(|h| format!("{h:>16}")).concat() + "\n";
+    let mut text = head.map(|h| format!("{h:>19}")).concat() + "\n";
     for r in &suite.rows {
         let cells = [r.adapted_to, r.luminance, r.screen[0], r.screen[1], r.value[0], r.value[1]];
-        text += &cells.map(|x| format!("{x:>16.10}")).concat();
+        text += &cells.map(|x| format!("{x:>19.10}")).concat();
         text += if r.passed { "  ok\n" } else { "  FAILED\n" };
     }
     text += &format!(
