@@ -399,7 +399,7 @@ fn without_webgl_the_page_says_so_and_keeps_its_pictures() {
 #[test]
 #[ignore = "a measurement, not a check"]
 fn how_long_a_page_takes() {
-    let Some(page) = std::env::var_os("ETALON_PAGE") else { return };
+    let page = std::env::var_os("ETALON_PAGE").expect("ETALON_PAGE names the page to be timed");
     let Some(b) = browser(&[]) else { return };
     b.resize(1400, 1000);
     b.open(Path::new(&page));
