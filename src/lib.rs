@@ -56,6 +56,7 @@ pub mod solver;
 pub mod stats;
 pub mod study;
 pub mod view;
+pub mod world;
 
 pub use api::{Check, Error, Estimator, Reference, ReferenceOptions, examine_scene, open_scene, solve};
 pub use metrics::{Comparison, Limit, Limits, Metric, Place, Verdict, WorstPatch};

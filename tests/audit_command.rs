@@ -13,17 +13,7 @@ fn folder() -> tempfile::TempDir {
 
 /// A record without its seconds, which differ from run to run.
 fn timeless(mut value: Value) -> Value {
-    fn strip(value: &mut Value) {
-        match value {
-            Value::Object(o) => {
-                o.remove("seconds");
-                o.values_mut().for_each(strip);
-            }
-            Value::Array(a) => a.iter_mut().for_each(strip),
-            _ => {}
-        }
-    }
-    strip(&mut value);
+    program::strip_seconds(&mut value);
     // Findings quote seconds in words.
     value["findings"].as_array_mut().expect("findings").retain(|f| f["about"] != "mend");
     value

@@ -1,10 +1,11 @@
-//! Audit of hemi-cube form factors: which pairs are wrong, by how much and why, what it does to radiosities, what would
-//! mend it; and what can be told of a matrix that somebody else's hemi-cube made.
+//! Audits. Of environment maps: [`envmap`]. Of hemi-cube form factors: which pairs are wrong, by how much and why, what
+//! it does to radiosities, what would mend it; and what can be told of a matrix that somebody else's hemi-cube made.
 
 mod beats;
 mod causes;
 mod cures;
 mod effect;
+pub mod envmap;
 pub mod fingerprint;
 mod rank;
 mod seen;

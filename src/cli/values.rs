@@ -1,5 +1,6 @@
 //! Values of options: fractions and percentages, spans of time, states.
 
+use crate::math::DVec3;
 use clap::ValueEnum;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -96,6 +97,23 @@ impl FromStr for Pixels {
         size.ok_or_else(|| {
             format!("\"{text}\" is not a size: write WIDTHxHEIGHT in pixels (640x480), at most {MOST_PIXELS} each")
         })
+    }
+}
+
+/// Three numbers, written X,Y,Z: a place in metres, or a direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triple(pub DVec3);
+
+impl FromStr for Triple {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<f64>> =
+            text.split(',').map(|s| s.trim().parse().ok().filter(|x: &f64| x.is_finite())).collect();
+        match numbers.as_deref() {
+            Some([x, y, z]) => Ok(Self(DVec3::new(*x, *y, *z))),
+            _ => Err(format!("\"{text}\" is not three numbers: write X,Y,Z (1.5,0,2)")),
+        }
     }
 }
 

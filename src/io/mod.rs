@@ -17,6 +17,7 @@ mod series;
 mod solution;
 mod store;
 mod unfinished;
+pub mod world_map;
 
 pub use certified::{certified, certified_names};
 pub use claim::{Claim, end_claims};

@@ -10,6 +10,7 @@ mod brightness;
 mod changes;
 mod chart;
 pub mod curves;
+pub mod envmap;
 mod figures;
 mod format;
 mod headline;
@@ -19,8 +20,10 @@ mod junit;
 mod layers;
 mod lines;
 mod markdown;
+mod number;
 mod scene3d;
 mod split;
+mod template;
 #[cfg(test)]
 mod testing;
 mod text;

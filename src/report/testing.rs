@@ -1,5 +1,6 @@
 //! A real little record for the tests of reports: the room of `render::testing` under direct light.
 
+use super::html::context::minus;
 use crate::metrics::{
     Breakdown, Comparison, Decision, Judged, LimitOutcome, Part as ErrorPart, Split, Truth, Verdict, WorstPatch,
     break_down,
@@ -179,4 +180,63 @@ pub(crate) fn with_split() -> Record {
         ..Split::default()
     });
     r
+}
+
+/// Text with what the template does to it.
+pub(super) fn shown(text: &str) -> String {
+    let text = minus(text);
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            '\'' => out += "&#x27;",
+            '/' => out += "&#x2f;",
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Every element that is opened is closed, in order.
+pub(super) fn assert_well_formed(page: &str) {
+    // Scripts are no markup, and style is none.
+    let page = ["script", "style"].iter().fold(page.to_string(), |page, name| {
+        let (begin, end) = (format!("<{name}"), format!("</{name}>"));
+        page.split(&end).map(|part| part.split(&begin).next().expect("a part")).collect()
+    });
+    let void = ["meta", "img", "br", "!DOCTYPE"];
+    let mut open: Vec<String> = Vec::new();
+    let mut at = 0;
+    while let Some(begin) = page[at..].find('<').map(|k| k + at) {
+        if page[begin..].starts_with("<!--") {
+            at = begin + page[begin..].find("-->").expect("an end of the comment");
+            continue;
+        }
+        let end = begin + page[begin..].find('>').expect("an end of the tag");
+        let tag = &page[begin + 1..end];
+        let name: String =
+            tag.trim_start_matches('/').chars().take_while(|c| !c.is_whitespace() && *c != '/').collect();
+        if tag.starts_with('/') {
+            assert_eq!(open.pop().as_deref(), Some(name.as_str()), "at {}", &page[begin.saturating_sub(200)..end]);
+        } else if !tag.ends_with('/') && !void.contains(&name.as_str()) {
+            open.push(name);
+        }
+        at = end;
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+/// What stands outside of the marked blocks.
+pub(super) fn outside(page: &str) -> String {
+    let mut out = String::new();
+    let mut rest = page;
+    while let Some(begin) = rest.find("<!-- wall-clock: begin") {
+        out += &rest[..begin];
+        let end = "<!-- wall-clock: end -->";
+        rest = &rest[begin + rest[begin..].find(end).expect("an end") + end.len()..];
+    }
+    out + rest
 }

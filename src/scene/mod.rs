@@ -18,6 +18,7 @@ mod region;
 mod shared;
 mod stage;
 mod states;
+mod without;
 
 pub use contact::COINCIDENCE_TOLERANCE;
 pub use error::SceneError;

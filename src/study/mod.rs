@@ -5,6 +5,7 @@ mod baseline;
 mod causes;
 mod contributions;
 pub mod converge;
+pub mod envmap;
 mod judge;
 mod kept;
 mod looks;

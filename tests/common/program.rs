@@ -37,3 +37,15 @@ pub fn refused(folder: &Path, arguments: &str) -> String {
 pub fn json(folder: &Path, arguments: &str) -> Value {
     serde_json::from_str(&ok(folder, &format!("{arguments} --json"))).expect("one JSON object")
 }
+
+/// Takes out all fields named `seconds`, which differ from run to run.
+pub fn strip_seconds(value: &mut Value) {
+    match value {
+        Value::Object(o) => {
+            o.retain(|name, _| name != "seconds" && !name.ends_with("_seconds"));
+            o.values_mut().for_each(strip_seconds);
+        }
+        Value::Array(a) => a.iter_mut().for_each(strip_seconds),
+        _ => {}
+    }
+}

@@ -1,6 +1,7 @@
 //! `etalon audit`.
 
 use super::judge::OnInconclusive;
+use super::project::EnvmapArgs;
 use super::rays::RayArgs;
 use super::scene::SceneArgs;
 use crate::cli::values::Fraction;
@@ -12,6 +13,8 @@ use std::path::PathBuf;
 pub enum AuditCommand {
     /// Where, why and by how much a hemi-cube is wrong, and what would mend it.
     Hemicube(Box<AuditArgs>),
+    /// How wrong the light of an environment map is on an object, where, why, and how far from its centre it can be used.
+    Envmap(Box<EnvmapArgs>),
 }
 
 /// Where hemi-cubes stand.

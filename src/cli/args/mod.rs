@@ -8,6 +8,7 @@ mod convert;
 mod form_factors;
 mod judge;
 mod manual;
+mod project;
 mod rays;
 mod reference;
 mod render;
@@ -28,6 +29,7 @@ pub use form_factors::{
 };
 pub use judge::{Causes, CheckArgs, CompareArgs, OnInconclusive};
 pub use manual::{CompletionsArgs, ManArgs};
+pub use project::{EnvmapArgs, GivenLayout, LayoutChoice, ProjectArgs};
 pub use rays::{Estimator, RayArgs, SuiteArgs};
 pub use reference::{ReferenceArgs, Truth};
 pub use render::{OnOff, RenderArgs, RenderStyle};
@@ -120,6 +122,9 @@ pub enum Command {
     Audit(AuditCommand),
     /// Pictures of a solution or a reference, or of the patches alone.
     Render(RenderArgs),
+    /// The whole world as it is seen from one point: cube, latitude-longitude, fish-eye, perspective; one layout from
+    /// another.
+    Project(Box<ProjectArgs>),
     /// Write the HTML report of a finished run again.
     Report {
         /// Directory that `check --report`, `compare --report` or `demo` wrote.

@@ -1,6 +1,8 @@
 //! One file per command: plan, run, print.
 
 mod audit;
+mod audit_envmap;
+mod audit_envmap_pictures;
 mod audit_tables;
 mod baseline;
 mod bench;
@@ -23,9 +25,11 @@ mod form_factors_repair;
 mod form_factors_told;
 mod inputs;
 mod limits;
+mod lit;
 mod looks;
 mod machine;
 mod manual;
+mod project;
 mod receivers;
 mod reference;
 mod render;
@@ -34,6 +38,7 @@ mod scene;
 mod solve;
 mod solve_by_shots;
 mod split;
+mod standpoint;
 mod told;
 mod validate;
 
@@ -66,6 +71,8 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Converge(ConvergeCommand::Run(args)) => converge::run(args, cli.global.kernel, console),
         Command::Converge(ConvergeCommand::Other(ConvergeOther::Diff(args))) => converge_diff::run(args, console),
         Command::Audit(AuditCommand::Hemicube(args)) => audit::run(args, kernel, console),
+        Command::Audit(AuditCommand::Envmap(args)) => audit_envmap::run(args, kernel, console),
+        Command::Project(args) => project::run(args, kernel, console),
         Command::Render(args) => render::run(args, kernel, console),
         Command::Report { directory } => report::run(directory, cli.global.kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),

@@ -1,11 +1,11 @@
 //! What would mend it: every cure that was run, by its cost. All of this depends on the clock.
 
 use super::charts::{errors, limit};
-use super::page::{Number, number};
 use crate::audit::Cure;
 use crate::report::chart::{Axis, Block, Cell, Chart, Dot, Paint, Scale, Series, Shape, Unit};
 use crate::report::format::{count, percent, percent_estimate, significant};
 use crate::report::html::context::{class, minus};
+use crate::report::number::{Number, number};
 use crate::study::audit::{AuditRecord, CureRun};
 use serde::Serialize;
 

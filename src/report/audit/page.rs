@@ -8,16 +8,15 @@ use super::sources::{SourceRow, rows};
 use crate::audit::Cause;
 use crate::metrics::Verdict;
 use crate::report::chart::{self, Block, Library};
-use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
+use crate::report::format::{confidence, count, percent, percent_exact, significant};
+use crate::report::headline::verdict_word;
 use crate::report::html::context::{class, minus};
+use crate::report::number::{Number, number};
+use crate::report::template::{filled, inlined};
 use crate::report::{Artifact, ReportError};
-use crate::stats::Estimate;
 use crate::study::audit::{AuditRecord, Finding, Form, Wrong};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
+use minijinja::context;
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// The page and what it is put together from.
 const TEMPLATES: [(&str, &str); 9] = [
@@ -31,9 +30,6 @@ const TEMPLATES: [(&str, &str); 9] = [
     chart::TEMPLATE,
     chart::STYLE,
 ];
-
-/// Where nothing is known.
-const UNKNOWN: &str = "\u{2013}";
 
 /// What each cause is: name and sentence.
 const CAUSES: [(&str, &str); 3] = [
@@ -85,13 +81,6 @@ pub(super) struct Page<'a> {
     program: String,
 }
 
-/// A number with its interval.
-#[derive(Debug, Serialize)]
-pub(super) struct Number {
-    pub value: String,
-    pub interval: Option<String>,
-}
-
 #[derive(Debug, Serialize)]
 struct FindingRow {
     about: String,
@@ -112,14 +101,6 @@ struct CauseRow {
     matrix: String,
 }
 
-pub(super) fn number(e: Option<&Estimate>) -> Number {
-    let shown = e.map(|e| percent_estimate(e, false));
-    shown.map_or(Number { value: UNKNOWN.into(), interval: None }, |s| Number {
-        value: minus(&s.value),
-        interval: s.interval.map(|i| minus(&i)),
-    })
-}
-
 /// What is said of a run against the limit.
 pub(super) fn chip(verdict: Option<Verdict>) -> &'static str {
     verdict.map_or("", |v| match v {
@@ -131,12 +112,7 @@ pub(super) fn chip(verdict: Option<Verdict>) -> &'static str {
 
 impl<'a> Page<'a> {
     pub(super) fn new(record: &'a AuditRecord, extras: &'a AuditExtras, views: &'a [MapView]) -> Self {
-        let word = match record.verdict {
-            Some(Verdict::Pass) => "PASS",
-            Some(Verdict::Fail) => "FAIL",
-            Some(Verdict::Inconclusive) => "INCONCLUSIVE",
-            None => "NO LIMIT",
-        };
+        let word = record.verdict.map_or("NO LIMIT", verdict_word);
         let found = |f: &Finding| FindingRow { about: f.about.clone(), text: minus(&f.text) };
         Self {
             title: format!("{word}: hemi-cubes in {}", record.scene),
@@ -254,10 +230,7 @@ fn notes(record: &AuditRecord) -> Vec<(&'static str, String)> {
 }
 
 fn facts(record: &AuditRecord) -> Vec<(&'static str, String)> {
-    let with = |w: &Wrong| {
-        let n = number(w.rms.as_ref());
-        n.interval.map_or(n.value.clone(), |i| format!("{} ({i})", n.value))
-    };
+    let with = |w: &Wrong| number(w.rms.as_ref()).in_line();
     let mut facts = vec![
         ("Error of reflected light (eq. 7)", with(&record.wrong)),
         ("Over the top 1 %", number(record.wrong.top1.as_ref()).value),
@@ -298,7 +271,7 @@ fn causes(record: &AuditRecord) -> Vec<CauseRow> {
         meaning: "the hemi-cube as it is",
         alone: number(record.wrong.rms.as_ref()).value,
         length: length(whole),
-        left: Number { value: UNKNOWN.into(), interval: None },
+        left: Number::unknown(),
         matrix: minus(&percent(record.matrix.total)),
     });
     rows
@@ -339,16 +312,7 @@ fn settings(record: &AuditRecord) -> Vec<(&'static str, String)> {
 
 /// Fills in the page; everything that is not markup of the template or a drawing is escaped.
 pub(super) fn render(page: &Page, pictures: &[Artifact]) -> Result<String, ReportError> {
-    let uri = |a: &Artifact| (a.name.clone(), format!("data:image/png;base64,{}", STANDARD.encode(&a.bytes)));
-    let uris: BTreeMap<String, String> = pictures.iter().map(uri).collect();
-    let mut env = Environment::new();
-    env.set_auto_escape_callback(|_| AutoEscape::Html);
-    env.set_undefined_behavior(UndefinedBehavior::Strict);
-    env.set_trim_blocks(true);
-    env.set_lstrip_blocks(true);
-    for (name, text) in TEMPLATES {
-        env.add_template(name, text)?;
-    }
+    let uris = inlined(pictures);
     let library = Library::for_charts(page.all_charts().next().is_some());
-    Ok(env.get_template("audit.html")?.render(context! { page, uris, library })?)
+    filled(TEMPLATES, "audit.html", context! { page, uris, library })
 }

@@ -8,6 +8,7 @@ use crate::render::{Visibility, fit_camera};
 use crate::report::chart::testing::without_library;
 use crate::report::format::percent_estimate;
 use crate::report::html::context::minus;
+use crate::report::testing::{assert_well_formed, outside, shown};
 use crate::study::Session;
 use crate::study::audit::{AuditRequest, Form, audit};
 use std::sync::OnceLock;
@@ -74,24 +75,6 @@ fn page(record: &AuditRecord) -> String {
     String::from_utf8(files[0].bytes.clone()).expect("text")
 }
 
-/// Text with what the template does to it.
-fn shown(text: &str) -> String {
-    let text = minus(text);
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out += "&amp;",
-            '<' => out += "&lt;",
-            '>' => out += "&gt;",
-            '"' => out += "&quot;",
-            '\'' => out += "&#x27;",
-            '/' => out += "&#x2f;",
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 #[test]
 fn the_page_holds_verdict_numbers_causes_sources_and_cures() {
     let record = record();
@@ -127,35 +110,9 @@ fn names_stay_text_and_nothing_comes_from_outside() {
     assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("src=\"un"));
 }
 
-/// Every element that is opened is closed, in order.
 #[test]
 fn the_page_is_well_formed() {
-    let page = page(record());
-    // Scripts are no markup, and style is none.
-    let page = ["script", "style"].iter().fold(page, |page, name| {
-        let (begin, end) = (format!("<{name}"), format!("</{name}>"));
-        page.split(&end).map(|part| part.split(&begin).next().expect("a part")).collect()
-    });
-    let void = ["meta", "img", "br", "!DOCTYPE"];
-    let mut open: Vec<String> = Vec::new();
-    let mut at = 0;
-    while let Some(begin) = page[at..].find('<').map(|k| k + at) {
-        if page[begin..].starts_with("<!--") {
-            at = begin + page[begin..].find("-->").expect("an end of the comment");
-            continue;
-        }
-        let end = begin + page[begin..].find('>').expect("an end of the tag");
-        let tag = &page[begin + 1..end];
-        let name: String =
-            tag.trim_start_matches('/').chars().take_while(|c| !c.is_whitespace() && *c != '/').collect();
-        if tag.starts_with('/') {
-            assert_eq!(open.pop().as_deref(), Some(name.as_str()), "at {}", &page[begin.saturating_sub(200)..end]);
-        } else if !tag.ends_with('/') && !void.contains(&name.as_str()) {
-            open.push(name);
-        }
-        at = end;
-    }
-    assert!(open.is_empty(), "{open:?}");
+    assert_well_formed(&page(record()));
 }
 
 #[test]
@@ -215,18 +172,6 @@ fn a_map_follows_its_cause() {
     assert_ne!(bytes(record(), "aliasing"), bytes(&other, "aliasing"));
     assert_ne!(bytes(record(), "error"), bytes(&other, "error"));
     assert_eq!(bytes(record(), "light"), bytes(&other, "light"));
-}
-
-/// What stands outside of the marked blocks.
-fn outside(page: &str) -> String {
-    let mut out = String::new();
-    let mut rest = page;
-    while let Some(begin) = rest.find("<!-- wall-clock: begin") {
-        out += &rest[..begin];
-        let end = "<!-- wall-clock: end -->";
-        rest = &rest[begin + rest[begin..].find(end).expect("an end") + end.len()..];
-    }
-    out + rest
 }
 
 #[test]

@@ -7,9 +7,10 @@ use crate::metrics::FLOOR_FACTOR;
 use crate::report::chart::{self, Block, Library};
 use crate::report::format::{confidence, count, percent, percent_estimate, percent_exact, significant};
 use crate::report::html::context::minus;
+use crate::report::template::filled;
 use crate::report::{ReportError, scene3d};
 use crate::study::converge::{At, Axis, Difference, ReachedRow, mesh_rate};
-use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
+use minijinja::context;
 use serde::Serialize;
 
 /// The page and what it is put together from.
@@ -78,17 +79,9 @@ fn page<'a>(about: &'a About, title: &str, lead: String) -> Page<'a> {
 }
 
 fn render(page: &Page, viewer: Option<&Film>) -> Result<String, ReportError> {
-    let mut env = Environment::new();
-    env.set_auto_escape_callback(|_| AutoEscape::Html);
-    env.set_undefined_behavior(UndefinedBehavior::Strict);
-    env.set_trim_blocks(true);
-    env.set_lstrip_blocks(true);
-    for (name, text) in TEMPLATES.into_iter().chain(scene3d::TEMPLATES) {
-        env.add_template(name, text)?;
-    }
     let drawn = page.sections.iter().chain(&page.clock).any(|s| !s.figures.is_empty());
     let library = Library::for_charts(drawn);
-    Ok(env.get_template("curves.html")?.render(context! { page, viewer, library })?)
+    filled(TEMPLATES.into_iter().chain(scene3d::TEMPLATES), "curves.html", context! { page, viewer, library })
 }
 
 fn drawn(figures: &[Drawing], edit: usize, clock: bool) -> Vec<&Block> {

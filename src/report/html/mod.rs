@@ -17,15 +17,13 @@ use super::figures::{ViewFigures, figures};
 use super::json::{record_file, timing_file};
 use super::layers::exr_layers;
 use super::scene3d::{self, Parts, scene_view};
+use super::template::{filled, inlined};
 use super::{Artifact, Exporter, Extras, ReportError};
 use crate::io::image::png;
 use crate::study::Record;
 use crate::view::Camera;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use context::Page;
-use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
-use std::collections::BTreeMap;
+use minijinja::context;
 
 /// Name of the page in its folder.
 pub const PAGE_NAME: &str = "report.html";
@@ -89,18 +87,10 @@ fn viewer(record: &Record, extras: &Extras) -> Result<Option<Parts>, ReportError
 
 /// Fills in the page; everything that is not markup of the template is escaped.
 fn render(page: &Page, pictures: &[Artifact], viewer: Option<&Parts>) -> Result<String, ReportError> {
-    let uri = |a: &Artifact| (a.name.clone(), format!("data:image/png;base64,{}", STANDARD.encode(&a.bytes)));
-    let uris: BTreeMap<String, String> = pictures.iter().map(uri).collect();
-    let mut env = Environment::new();
-    env.set_auto_escape_callback(|_| AutoEscape::Html);
-    env.set_undefined_behavior(UndefinedBehavior::Strict);
-    env.set_trim_blocks(true);
-    env.set_lstrip_blocks(true);
-    for (name, text) in TEMPLATES.into_iter().chain(scene3d::TEMPLATES) {
-        env.add_template(name, text)?;
-    }
+    let uris = inlined(pictures);
     let library = chart::Library::for_charts(page.all_charts().next().is_some());
-    Ok(env.get_template("page.html")?.render(context! { page, uris, viewer, library })?)
+    let templates = TEMPLATES.into_iter().chain(scene3d::TEMPLATES);
+    filled(templates, "page.html", context! { page, uris, viewer, library })
 }
 
 #[cfg(test)]

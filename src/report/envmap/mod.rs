@@ -1,0 +1,59 @@
+//! An audit of environment maps as a page: the verdict, what the error is made of, what it depends on, pictures [G86].
+
+mod charts;
+mod clock;
+mod page;
+mod parts;
+mod pictures;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use super::{Artifact, Phase, ReportError};
+use crate::io::image::png;
+use crate::render::Raster;
+use crate::study::envmap::EnvmapRecord;
+
+/// Name of the page in its folder.
+pub const ENVMAP_PAGE: &str = "index.html";
+
+/// A picture ready to be shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvmapPicture {
+    /// Stem of its file; where it stands in the page follows from it: `world-*`, `footprints-*`,
+    /// `sphere-{diffuse,half,mirror}-{map,rays,off}`, `object-{map,hybrid,rays,off}`, anything else at the end.
+    pub name: String,
+    /// What it shows.
+    pub title: String,
+    /// The pixels.
+    pub raster: Raster,
+}
+
+/// What a page shows beside the record.
+#[derive(Debug, Clone, Copy)]
+pub struct EnvmapExtras<'a> {
+    /// Pictures, in order within each group.
+    pub pictures: &'a [EnvmapPicture],
+    /// Wall-clock times.
+    pub timing: &'a [Phase],
+}
+
+/// Files of the audit: the page, which needs nothing but itself, drawings (.svg) and tables (.csv) of its charts, the
+/// pictures (.png).
+///
+/// # Errors
+/// [`ReportError::Image`] for a picture whose pixels do not fit its size; [`ReportError::Page`], which no data provokes.
+pub fn envmap_files(record: &EnvmapRecord, extras: &EnvmapExtras) -> Result<Vec<Artifact>, ReportError> {
+    let encode = |p: &EnvmapPicture| -> Result<Artifact, ReportError> {
+        let r = &p.raster;
+        Ok(Artifact::new(pictures::file(p), png(r.width, r.height, &r.rgba)?))
+    };
+    let pictures = extras.pictures.iter().map(encode).collect::<Result<Vec<_>, _>>()?;
+    let page = page::Page::new(record, extras);
+    let mut files = vec![Artifact::new(ENVMAP_PAGE, page::render(&page, &pictures)?)];
+    files.extend(page.chart_files());
+    files.extend(pictures);
+    Ok(files)
+}
