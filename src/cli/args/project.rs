@@ -29,6 +29,9 @@ pub struct ProjectArgs {
     /// Direction of the front; default: the camera's, levelled.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub towards: Option<Triple>,
+    /// Motion blur of a perspective: the direction that the camera has turned to when the shutter closes.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub turning_to: Option<Triple>,
     /// Direction that is up; default: the camera's, else z.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub up: Option<Triple>,

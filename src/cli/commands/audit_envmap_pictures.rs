@@ -2,6 +2,7 @@
 
 use crate::cli::args::EnvmapArgs;
 use crate::cli::exit::Failure;
+use crate::math::DVec3;
 use crate::raycast::KernelKind;
 use crate::render::{ColourMap, Raster, Seen, ToneMap, WorldView, luminance, paint_radiances, paint_world, to_srgb8};
 use crate::report::envmap::EnvmapPicture;
@@ -10,7 +11,7 @@ use crate::solution::Radiosity;
 use crate::study::envmap::{Audited, EnvmapRequest, Light, Picture, object};
 use crate::study::{Receivers, Session};
 use crate::view::Operator;
-use crate::world::{DiffuseMap, Layout, Shape, WorldMap, resample};
+use crate::world::{Cone, DiffuseMap, Layout, Shape, WorldMap, outline, resample, unfolded};
 use std::f64::consts::PI;
 
 /// Edge of the faces that are drawn.
@@ -49,6 +50,8 @@ pub fn pictures(
             "The same in latitude-longitude, filtered from the cube",
             paint_world(&latlong, &shade),
         ),
+        picture("footprints-cube", FOOTPRINTS, footprints(&map, &shade)),
+        picture("footprints-latlong", "The same cones in latitude-longitude", footprints(&latlong, &shade)),
         picture("world-diffuse", "Its diffuse illumination map, magnified", magnified(&diffuse, &shade)),
     ];
     for found in &audited.pictures {
@@ -61,6 +64,43 @@ pub fn pictures(
         }
     }
     Ok(all)
+}
+
+/// What [`footprints`] draws.
+const FOOTPRINTS: &str = "What a wide cone (red) and a narrow one (blue) take of the cube: the quadrilateral of a pixel, and \
+                          concentric ellipses";
+
+/// A map with the outlines of two cones, quadrilateral [G86 fig. 4] and elliptical, three of them in one another
+/// [G86 fig. 6].
+fn footprints(map: &WorldMap, shade: &ToneMap) -> Raster {
+    let mut raster = paint_world(map, shade);
+    let shape = map.shape();
+    let mut pixel_of = vec![0; shape.texels()];
+    for (pixel, texel) in unfolded(shape).texels.iter().enumerate() {
+        texel.iter().for_each(|t| pixel_of[*t] = pixel);
+    }
+    // Up and to the right of the front: across an edge of the cube, and not far from the pole.
+    let cones = [(DVec3::new(0.5, 0.7, 0.75), 0.35, [225, 40, 30]), (DVec3::new(-0.75, 0.6, 0.1), 0.06, [40, 90, 255])];
+    for (axis, half, colour) in cones {
+        let axis = axis.normalize();
+        let (a, b) = axis.any_orthonormal_pair();
+        let ellipse = Cone::Ellipse { axis, a: a * (1.6 * half), b: b * half };
+        let lines = [(Cone::Quad(ellipse.quad()), 1.0), (ellipse, 1.0), (ellipse, 2.0 / 3.0), (ellipse, 1.0 / 3.0)];
+        for (cone, scale) in lines {
+            for (panel, line) in outline(shape, &cone, scale) {
+                for ends in line.windows(2) {
+                    let steps = ((ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]) * 3.0).ceil().max(1.0);
+                    for k in 0..=steps as usize {
+                        let at = |i: usize| ends[0][i] + (ends[1][i] - ends[0][i]) * k as f64 / steps;
+                        let texel = |v: f64, n: usize| (v.max(0.0) as usize).min(n - 1);
+                        let index = shape.index(panel, texel(at(0), shape.width()), texel(at(1), shape.height()));
+                        raster.rgba[4 * pixel_of[index]..4 * pixel_of[index] + 3].copy_from_slice(&colour);
+                    }
+                }
+            }
+        }
+    }
+    raster
 }
 
 /// A table of irradiances as it is looked up, four pixels an entry.

@@ -4,6 +4,7 @@ mod drawn;
 mod from_picture;
 mod from_scene;
 mod sky;
+mod turning;
 
 use super::inputs;
 use crate::cli::args::{LayoutChoice, ProjectArgs, ToneChoice};
@@ -83,6 +84,9 @@ fn check(args: &ProjectArgs) -> Result<(), Failure> {
         return Err(Failure::input(
             "--field must lie above 0 and at 360 degrees at most for a fish-eye, below 175 for a perspective",
         ));
+    }
+    if args.turning_to.is_some() && args.layout != LayoutChoice::Perspective {
+        return Err(Failure::input("--turning-to is for --layout perspective: leave it out"));
     }
     if args.diffuse && (args.layout != LayoutChoice::Latlong || args.sky.is_some() && args.from_cube.is_some()) {
         return Err(Failure::input("--diffuse is stored in latitude-longitude: add --layout latlong --size 20"));

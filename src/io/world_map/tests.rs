@@ -116,8 +116,8 @@ fn our_own_files_come_back_to_the_bit() {
     let bands = ["r", "450.5 nm", "a b"].map(String::from).to_vec();
     for layout in [Layout::Cube, Layout::LatLong, Layout::SineLatLong, Layout::Fisheye { field: 187.5 }] {
         let map = uneven(layout);
-        let bytes = world_map_exr(&map, &bands, "two words").expect("encodes");
-        assert_eq!(bytes, world_map_exr(&map, &bands, "two words").expect("encodes"));
+        let bytes = world_map_exr(&map, &bands, "two words", &[]).expect("encodes");
+        assert_eq!(bytes, world_map_exr(&map, &bands, "two words", &[]).expect("encodes"));
         let (_folder, path) = write("map.exr", &bytes);
         let read = read_world_map(&path, None).expect("reads");
         assert_eq!((read.map.shape(), &read.bands), (map.shape(), &bands));
@@ -125,7 +125,7 @@ fn our_own_files_come_back_to_the_bit() {
         assert_eq!(bits(&read.map), bits(&map), "{layout:?}");
         assert!(read.how.contains("as its header says"), "{}", read.how);
     }
-    assert!(world_map_exr(&uneven(Layout::Cube), &bands[1..], "").is_err());
+    assert!(world_map_exr(&uneven(Layout::Cube), &bands[1..], "", &[]).is_err());
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn what_does_not_fit_is_refused_with_a_mend() {
 #[test]
 fn broken_files_end_in_an_error_never_in_a_panic() {
     let bands = ["r", "g", "b"].map(String::from).to_vec();
-    let exr = world_map_exr(&uneven(Layout::Cube), &bands, "x").expect("encodes");
+    let exr = world_map_exr(&uneven(Layout::Cube), &bands, "x", &[]).expect("encodes");
     let rgba: Vec<u8> = (0..16 * 8 * 4).map(|k| (k * k / 91) as u8).collect();
     let png = png(16, 8, &rgba).expect("encodes");
     for whole in [exr, png] {

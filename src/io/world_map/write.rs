@@ -10,11 +10,16 @@ use std::io::Cursor;
 /// A world map as an OpenEXR picture, ZIP-compressed without loss: a cube as the horizontal cross of its faces (4 N x 3 N),
 /// alpha 1 where there is one, a fish-eye with alpha 1 within its circle, the others as they are. The header names
 /// layout and bands, and latitude-longitude maps have OpenEXR's `envmap` attribute; read back, the values are the same to
-/// the bit. Same map, same bytes. `comments` go into the header.
+/// the bit. Same map, same bytes. `comments` go into the header; `more` are further channels, one value a texel each.
 ///
 /// # Errors
 /// [`ImageError::Size`] where there is not one name a band, [`ImageError::Exr`] where the encoder refuses.
-pub fn world_map_exr(map: &WorldMap, bands: &[String], comments: &str) -> Result<Vec<u8>, ImageError> {
+pub fn world_map_exr(
+    map: &WorldMap,
+    bands: &[String],
+    comments: &str,
+    more: &[(String, Vec<f32>)],
+) -> Result<Vec<u8>, ImageError> {
     let picture = unfolded(map.shape());
     let (width, height) = (picture.width, picture.height);
     if bands.len() != map.bands() || bands.is_empty() {
@@ -30,6 +35,9 @@ pub fn world_map_exr(map: &WorldMap, bands: &[String], comments: &str) -> Result
     let channel = |name: &str, samples| ex::AnyChannel::new(name, ex::FlatSamples::F32(samples));
     let of_band = |b: usize| picture.texels.iter().map(|t| t.map_or(0.0, |k| map.texel(k)[b])).collect();
     let mut channels: Vec<_> = channel_names(bands).iter().enumerate().map(|(b, n)| channel(n, of_band(b))).collect();
+    for (name, values) in more.iter().filter(|(_, v)| v.len() == map.shape().texels()) {
+        channels.push(channel(name, picture.texels.iter().map(|t| t.map_or(0.0, |k| values[k])).collect()));
+    }
     if !whole {
         let drawn = picture.texels.iter().map(|t| if t.is_some() { 1.0 } else { 0.0 });
         channels.push(channel("A", drawn.collect()));

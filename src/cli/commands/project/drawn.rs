@@ -47,7 +47,7 @@ impl Drawn {
         let bug = |e: ImageError| Failure::input(e.to_string());
         let bands = &self.photometry.bands;
         match &self.kind {
-            Kind::Map(map) => world_map_exr(map, bands, &self.comments).map_err(bug),
+            Kind::Map(map) => world_map_exr(map, bands, &self.comments, &self.more).map_err(bug),
             Kind::Flat([width, height], values) => {
                 let band = |c: usize| values.iter().skip(c).step_by(bands.len()).copied().collect();
                 let channels: Vec<Channel> = channel_names(bands)

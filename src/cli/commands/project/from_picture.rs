@@ -1,10 +1,10 @@
 //! A picture of a world laid out in another way, by filtering.
 
 use super::drawn::{Drawn, Kind, texels};
-use super::{Made, shape, sky};
+use super::{Made, shape, sky, turning};
 use crate::cli::args::ProjectArgs;
 use crate::cli::exit::Failure;
-use crate::io::world_map::{ReadMap, read_world_map};
+use crate::io::world_map::ReadMap;
 use crate::math::DVec3;
 use crate::view::{Camera, Photometry};
 use crate::world::{DiffuseMap, Layout, Shape, WorldMap, exact_picture, resample, round_trip};
@@ -22,7 +22,7 @@ fn photometry(bands: &[String]) -> Photometry {
 
 pub(super) fn made(args: &ProjectArgs, source: &Path) -> Result<Made, Failure> {
     refuse(args)?;
-    let ReadMap { map, bands, how } = read_world_map(source, sky::given(args.given))?;
+    let ReadMap { map, bands, how } = sky::open(source, args.given)?;
     let photometry = photometry(&bands);
     let from = map.shape();
     let mut words = vec![format!("{}: {how}", source.display())];
@@ -48,7 +48,7 @@ pub(super) fn made(args: &ProjectArgs, source: &Path) -> Result<Made, Failure> {
             json["round_trip"] = json!({ "rms": back.relative, "energy": back.mean_change, "worst": back.worst });
             (Kind::Map(drawn), "As the picture it was made from, filtered.")
         }
-        None => (perspective(args, &map)?, "As the picture it was made from, filtered."),
+        None => (perspective(args, &map, &mut words)?, "As the picture it was made from, filtered."),
     };
     json["from"] = json!({ "layout": from.layout, "size": from.size });
     let adapts_to = match &kind {
@@ -60,7 +60,7 @@ pub(super) fn made(args: &ProjectArgs, source: &Path) -> Result<Made, Failure> {
 }
 
 /// What a camera in the middle of the picture sees.
-fn perspective(args: &ProjectArgs, map: &WorldMap) -> Result<Kind, Failure> {
+fn perspective(args: &ProjectArgs, map: &WorldMap, words: &mut Vec<String>) -> Result<Kind, Failure> {
     let size = [(args.size * 4).div_ceil(3), args.size];
     let target = args.towards.map_or(DVec3::Y, |t| t.0);
     let up = args.up.map_or(DVec3::Z, |u| u.0);
@@ -68,6 +68,11 @@ fn perspective(args: &ProjectArgs, map: &WorldMap) -> Result<Kind, Failure> {
         return Err(Failure::input("--towards: the front must be another direction than up; give --up too"));
     }
     let camera = Camera { name: "turned".into(), eye: DVec3::ZERO, target, up, fov: args.field.unwrap_or(45.0), size };
+    if let Some(end) = args.turning_to {
+        let blur = turning::blurred(map, &camera, end.0, |d| d)?;
+        words.push(turning::words(blur.off));
+        return Ok(Kind::Flat(size, blur.values));
+    }
     Ok(Kind::Flat(size, exact_picture(map, size.map(|n| n as usize), |x, y| Some(camera.direction(x, y)))))
 }
 

@@ -1,7 +1,7 @@
 //! A world projection of a scene.
 
 use super::drawn::{Drawn, Kind, texels};
-use super::{Made, shape, sky};
+use super::{Made, shape, sky, turning};
 use crate::cli::args::ProjectArgs;
 use crate::cli::commands::{inputs, lit::Lit, standpoint};
 use crate::cli::console::Console;
@@ -192,7 +192,13 @@ impl Scene<'_> {
             if args.from_cube.is_some() { ", and is what was drawn" } else { "; rays are what was drawn" }
         ));
         json["from_cube"] = json!({ "size": seen.view.shape.size, "off_rays": off, "drawn": args.from_cube.is_some() });
-        let values = if args.from_cube.is_some() { from_cube } else { direct };
+        let mut values = if args.from_cube.is_some() { from_cube } else { direct };
+        if let Some(end) = args.turning_to {
+            let blur = turning::blurred(&seen.map, &here, end.0, |d| self.centre.frame.to_local(d))?;
+            words.push(turning::words(blur.off));
+            json["blur"] = json!({ "off_instants": blur.off });
+            values = blur.values;
+        }
         let drawn =
             self.drawn(stage, Kind::Flat([width, height], values), &seen.view, "Radiance, W/(m^2 sr) per band.");
         Ok(Made { drawn, words, json })

@@ -5,11 +5,11 @@ use crate::cli::exit::Failure;
 use crate::io::world_map::{LayoutHint, ReadMap, read_world_map};
 use crate::math::DVec3;
 use crate::render::Centre;
-use crate::world::{Cone, Pyramid, Spot, WorldMap};
+use crate::world::{Cone, Pyramid, Spot, WorldMap, half_cube};
 use std::path::Path;
 
 /// The layout that a user says a picture has.
-pub(super) fn given(layout: Option<GivenLayout>) -> Option<LayoutHint> {
+fn given(layout: Option<GivenLayout>) -> Option<LayoutHint> {
     layout.map(|layout| match layout {
         GivenLayout::Latlong => LayoutHint::LatLong,
         GivenLayout::SineLatlong => LayoutHint::SineLatLong,
@@ -20,9 +20,19 @@ pub(super) fn given(layout: Option<GivenLayout>) -> Option<LayoutHint> {
     })
 }
 
-/// A picture of a world in the bands of a scene.
+/// A picture of a world; a photograph of the sky becomes the upper half of a cube [G86 fig. 10].
+pub(super) fn open(file: &Path, layout: Option<GivenLayout>) -> Result<ReadMap, Failure> {
+    let mut read = read_world_map(file, given(layout))?;
+    if layout == Some(GivenLayout::SkyFisheye) {
+        read.map = half_cube(&read.map);
+        read.how += ", about what is up: the upper half of a cube";
+    }
+    Ok(read)
+}
+
+/// The same in the bands of a scene.
 pub(super) fn read(file: &Path, layout: Option<GivenLayout>, bands: &[String]) -> Result<WorldMap, Failure> {
-    let ReadMap { map, bands: own, .. } = read_world_map(file, given(layout))?;
+    let ReadMap { map, bands: own, .. } = open(file, layout)?;
     let same = |a: &str, b: &str| a.eq_ignore_ascii_case(b);
     let places: Option<Vec<usize>> = bands.iter().map(|b| own.iter().position(|o| same(o, b))).collect();
     let places = match (places, own.len()) {
