@@ -24,6 +24,7 @@ fn main() -> Done {
     gallery.cornell_box()?;
     gallery.tones()?;
     gallery.unfolded()?;
+    gallery.environment()?;
     if all {
         gallery.robot_room()?;
     }
@@ -99,13 +100,27 @@ impl Gallery {
         ))?;
         let rows = [["reference-before", "reference"], ["method-1-after-100", "method-2-after-100"]];
         let pictures = rows.map(|row| row.map(|stem| format!("curves/picture-edit-1-{stem}.png")));
-        let upper = side_by_side(&[self.read(&pictures[0][0])?, self.read(&pictures[0][1])?]);
-        let lower = side_by_side(&[self.read(&pictures[1][0])?, self.read(&pictures[1][1])?]);
-        let rgba = [upper.rgba, lower.rgba].concat();
-        let path = self.folder.join("robot-room.png");
-        std::fs::write(&path, png(upper.width, upper.height + lower.height, &rgba)?)?;
-        println!("  -> {}", path.display());
-        Ok(())
+        self.rows(&pictures, "robot-room.png")
+    }
+
+    /// The world around the tall block, and the spheres of [G86 fig. 8]: by the map above, by rays below.
+    fn environment(&self) -> Done {
+        self.etalon("audit envmap demo/reference --object tall-block --size 256 -o envmap")?;
+        self.keep("envmap/footprints-cube.png", "world-unfolded.png")?;
+        let row = |by: &str| ["diffuse", "half", "mirror"].map(|kind| format!("envmap/sphere-{kind}-{by}.png"));
+        self.rows(&[row("map"), row("rays")], "spheres.png")
+    }
+
+    /// Rows of pictures, all of one size, above one another.
+    fn rows<const N: usize>(&self, rows: &[[String; N]], to: &str) -> Done {
+        let (mut rgba, mut size) = (Vec::new(), [0, 0]);
+        for row in rows {
+            let row = side_by_side(&row.iter().map(|n| self.read(n)).collect::<Result<Vec<Raster>, _>>()?);
+            size = [row.width, size[1] + row.height];
+            rgba.extend(row.rgba);
+        }
+        std::fs::write(self.work.join(to), png(size[0], size[1], &rgba)?)?;
+        self.keep(to, to)
     }
 }
 

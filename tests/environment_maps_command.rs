@@ -66,6 +66,7 @@ fn what_makes_no_sense_is_refused() {
         (format!("{project} --camera nobody -o x.exr"), "nobody"),
         (format!("{project} --without nobody -o x.exr"), "nobody"),
         (format!("{project} --diffuse -o x.exr"), "latlong"),
+        (format!("{project} --turning-to 0,1,0 -o x.exr"), "perspective"),
         (format!("{project} --size 8192 -o x.exr"), "texels"),
         (format!("{project} --sky bad.exr -o x.exr"), "bad.exr"),
         ("project builtin:cornell-box-coarse -o x.exr".into(), "--solution"),

@@ -192,7 +192,7 @@ impl Shape {
                 let angle = aside.atan2(d.y);
                 let r = angle / (0.5 * field.to_radians());
                 let (x, z) = if aside > 0.0 { (d.x / aside * r, d.z / aside * r) } else { (0.0, 0.0) };
-                (r <= 1.0).then(|| Spot { panel: 0, x: 0.5 * (1.0 + x) * w, y: 0.5 * (1.0 - z) * h })
+                (r <= 1.0).then_some(Spot { panel: 0, x: 0.5 * (1.0 + x) * w, y: 0.5 * (1.0 - z) * h })
             }
         }
     }

@@ -48,13 +48,16 @@ pub fn gather_near(
     stations.par_iter().enumerate().map(of).collect()
 }
 
+/// Adds what a ray brings to the sums of the bands.
+pub type Add<'a> = &'a dyn Fn(Option<u32>, DVec3, &mut [f64]);
+
 /// Mean over a station's cosine-weighted rays of whatever `add` adds for each: it is told the patch that the ray meets
 /// within `reach` (metres; `Some(u32::MAX)` where that is the back of something), or `None` and the direction.
 pub fn mean_near(
     tracer: &Tracer,
     station: &Station,
     reach: f64,
-    add: &dyn Fn(Option<u32>, DVec3, &mut [f64]),
+    add: Add,
     bands: usize,
     stream: Stream,
     rays: u64,

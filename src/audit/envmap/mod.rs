@@ -11,5 +11,5 @@ mod points;
 
 pub use error::{Weighted, relative_error, weighted_share};
 pub use gather::{Lobe, Station, gather, mean_in};
-pub use hybrid::{gather_near, mean_near};
+pub use hybrid::{Add, gather_near, mean_near};
 pub use points::{Point, over, within_reach};

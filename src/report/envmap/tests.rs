@@ -254,6 +254,21 @@ fn one_number_unknown_leaves_one_point_out() {
     assert_eq!(count("cube-size", "through the table of 40 \u{d7} 20"), 2);
 }
 
+/// The object of a convex body is exactly 0: that is a number, not a dash.
+#[test]
+fn an_error_of_zero_is_shown_and_its_place_is_told() {
+    let mut record = record();
+    record.irradiance.occlusion = Some(crate::stats::Estimate::exact(0.0));
+    assert!(!page(&record).contains("An error of 0 stands"));
+    record.by_distance.iter_mut().for_each(|a| a.parts.occlusion = Some(crate::stats::Estimate::exact(0.0)));
+    let page = page(&record);
+    assert_eq!(page.matches("An error of 0 stands at the lower end.").count(), 1);
+    let row = between(between(&page, "<table class=\"causes\">", "</table>"), "swatch c2", "</tr>");
+    assert!(row.contains("<span class=\"big\">0\u{202f}%</span></td>") && row.contains("width=\"0.00\""), "{row}");
+    let rows = table(&files(&record), "by-distance");
+    assert_eq!(rows.iter().filter(|r| &r[0] == "object" && &r[2] == "0.0").count(), 3);
+}
+
 #[test]
 fn an_empty_record_has_a_page() {
     let mut r = unknown();

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Rays for the diffuse light of a pixel.
-const RAYS: u64 = 256;
+const RAYS: u64 = 1024;
 
 /// A map in all bands.
 pub(super) struct Coloured {
@@ -146,14 +146,11 @@ impl Shader<'_> {
         let mut sum = vec![0.0; self.bands];
         let mut beyond = 0.0;
         for hit in tracer.look(&rays) {
-            match hit {
-                Some((_, point, landing)) if point.distance(pixel.place) <= reach => {
-                    if landing < BACK {
-                        self.add_radiance(landing, &mut sum);
-                    }
-                }
-                _ if reach.is_finite() => beyond += 1.0,
-                _ => {}
+            let near = hit.filter(|(_, point, _)| point.distance(pixel.place) <= reach);
+            match near {
+                // Backs are dark.
+                Some((_, _, landing)) => self.add_radiance(landing, &mut sum),
+                None => beyond += if reach.is_finite() { 1.0 } else { 0.0 },
             }
         }
         if beyond > 0.0 {

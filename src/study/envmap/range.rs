@@ -27,7 +27,7 @@ pub(super) fn range(bench: &Bench, probe: &Probe) -> Range {
         stated,
         within: crossing(|e| e.value),
         between: [crossing(|e| e.high), crossing(|e| e.low)],
-        open: curve.last().and_then(|a| a.parts.total).is_some_and(|e| e.value < stated),
+        open: !curve.is_empty() && curve.iter().all(|a| a.parts.total.is_some_and(|e| e.value <= stated)),
         curve,
     }
 }

@@ -73,7 +73,7 @@ pub struct Range {
     pub within: Option<f64>,
     /// The same of the upper and of the lower ends of the intervals: surely below, not surely above.
     pub between: [Option<f64>; 2],
-    /// True where the curve ends below the stated error: the distance is the longest one tried.
+    /// True where the curve never rises above the stated error: the distance is the longest one tried.
     pub open: bool,
 }
 

@@ -109,8 +109,14 @@ fn line(name: &str, k: usize, dots: Vec<Dot>) -> Series {
 }
 
 /// A chart without rules and further columns; the caller adds them.
-fn chart(stem: &str, title: &str, caption: String, [x, y]: [Axis; 2], series: Vec<Series>) -> Option<Chart> {
-    let any = series.iter().any(|s| !s.dots.is_empty());
+fn chart(stem: &str, title: &str, mut caption: String, [x, y]: [Axis; 2], series: Vec<Series>) -> Option<Chart> {
+    let dots = || series.iter().flat_map(|s| &s.dots);
+    // 0 has no place on a logarithmic axis.
+    if y.scale == Scale::Log && dots().any(|d| d.y == 0.0) {
+        let blank = if caption.is_empty() { "" } else { " " };
+        caption += &format!("{blank}An error of 0 stands at the lower end.");
+    }
+    let any = dots().next().is_some();
     let chart = Chart { stem: stem.into(), title: title.into(), caption, x, y, series, rules: vec![], more: vec![] };
     any.then_some(chart)
 }
