@@ -71,8 +71,10 @@ impl WorldView {
             let other = |dx: i64, dy: i64| landings[neighbours.wrapped(panel, x as i64 + dx, y as i64 + dy)];
             (-1..=1).any(|dy| (-1..=1).any(|dx| other(dx, dy) != landings[k]))
         };
-        let mixed: Vec<u32> =
-            (0..texels as u32).into_par_iter().filter(|k| side > 1 && is_mixed(*k as usize)).collect();
+        let mixed: Vec<u32> = (0..texels as u32)
+            .into_par_iter()
+            .filter(|k| side > 1 && shape.middle(*k as usize).is_some() && is_mixed(*k as usize))
+            .collect();
         let samples: Vec<Vec<u32>> = mixed
             .par_chunks(64)
             .map(|texels| {
@@ -83,7 +85,14 @@ impl WorldView {
                         shape.direction(Spot { panel, x: at(x, s % side), y: at(y, s / side) })
                     })
                 };
-                shoot(tracer, centre, &texels.iter().flat_map(within).collect::<Vec<_>>()).0
+                let places: Vec<Option<DVec3>> = texels.iter().flat_map(within).collect();
+                let mut found = shoot(tracer, centre, &places).0;
+                // Samples outside of a fish-eye's circle stand for the middle of their texel.
+                let per_texel = (side * side) as usize;
+                for (k, landing) in found.iter_mut().enumerate().filter(|(k, _)| places[*k].is_none()) {
+                    *landing = landings[texels[k / per_texel] as usize];
+                }
+                found
             })
             .collect();
         let samples = samples.concat();

@@ -57,8 +57,8 @@ impl Cone {
     }
 }
 
-/// Mean over what a pixel sweeps over while t goes from 0 to 1, one value a band: the path is cut into pieces not much
-/// longer than the pixel is wide (64 at most), each of which is one ellipse ([`Cone::swept`], [`Pyramid::ewa`]).
+/// Mean over what a pixel sweeps over while t goes from 0 to 1, one value a band: the path is cut into pieces no
+/// longer than four times the pixel's ellipse is wide (64 pieces at most), each of which is one ellipse ([`Cone::swept`], [`Pyramid::ewa`]).
 pub fn swept(pyramid: &Pyramid, path: impl Fn(f64) -> [DVec3; 4]) -> Vec<f64> {
     let mut mean = vec![0.0; pyramid.bands()];
     let middle = |t: f64| Cone::Quad(path(t)).axis();

@@ -1,4 +1,4 @@
-//! Outlines of cones on the panels of a layout, for pictures of what is filtered [G86 fig. 4, fig. 6].
+//! Outlines of cones on the panels of a layout, for pictures of what is filtered [G86 fig. 4] [G86 fig. 6].
 
 use super::cone::Cone;
 use super::layout::{Layout, Shape, Spot};

@@ -135,6 +135,9 @@ pub struct EnvmapArgs {
     /// Points over the object.
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(16..=65_536))]
     pub points: u32,
+    /// Directions in which fast filters are held against exact ones, for each width of cones.
+    #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(10..=100_000))]
+    pub directions: u32,
     /// Rays of the truth at each point, over all randomisations.
     #[arg(long, default_value_t = 16_384, allow_hyphen_values = true, value_parser = clap::value_parser!(u64).range(16..=1 << 28))]
     pub rays: u64,

@@ -47,6 +47,7 @@ pub fn run(args: &EnvmapArgs, kernel: KernelKind, console: &Console) -> Result<u
         samples: args.samples,
         table: args.table.0,
         points: args.points as usize,
+        directions: args.directions.into(),
         rays: args.rays,
         seed: args.seed,
         stated: args.stated_error.0,

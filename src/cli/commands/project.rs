@@ -1,4 +1,4 @@
-//! `etalon project`: the world from a point, laid out; one layout from another.
+//! `etalon project`: the world from a point, laid out; one layout from another; Omnimax pictures [G86 fig. 11].
 
 mod drawn;
 mod from_picture;

@@ -169,7 +169,7 @@ fn hint_of(path: &Path, picture: &Picture, given: Option<LayoutHint>) -> Result<
     match known.into_iter().find(fits) {
         Some(hint) => Ok((hint, "by its proportions")),
         None if width == height => Err(FileError::new(path, format!("{width} x {height} pixels may be a fish-eye"))
-            .mend("say so, with the angle across its circle: no header does")),
+            .mend("say so: --given fisheye, or sky-fisheye for a photograph of what is up")),
         None => Err(FileError::new(path, format!("{width} x {height} pixels are no world map that is known"))
             .mend("2:1 is latitude-longitude, 4:3 and 3:4 are crosses, 1:6 and 6:1 six faces in line, 1:1 a fish-eye")),
     }

@@ -2,6 +2,7 @@
 
 use super::bench::{Bench, Probe};
 use super::record::{FilterRow, RoundTripRow};
+use super::request::EnvmapRequest;
 use crate::math::DVec3;
 use crate::render::Centre;
 use crate::sampling::{Role, Stream};
@@ -12,16 +13,14 @@ use std::time::Instant;
 
 /// Full opening angles across the shorter axis, degrees, and longer over shorter axes.
 const CONES: [(f64, f64); 6] = [(1.0, 1.0), (1.0, 4.0), (4.0, 1.0), (4.0, 4.0), (16.0, 1.0), (16.0, 4.0)];
-/// Directions of each.
-const DIRECTIONS: u64 = 300;
 /// Exact look-ups that are timed.
 const TIMED: usize = 10;
 /// Cosine to the vertical from which a direction is near a pole: 30 degrees.
 const NEAR: f64 = 0.866_025_403_784_438_6;
 
 /// The cones of one row: in all directions, turned at random.
-fn cones(width: f64, stretch: f64, seed: u64) -> Vec<Cone> {
-    let stream = Stream::new(Role::Witness, seed);
+fn cones(width: f64, stretch: f64, request: &EnvmapRequest) -> Vec<Cone> {
+    let stream = Stream::new(Role::Witness, request.seed);
     let cone = |k: u64| {
         let s = stream.child(k);
         let (z, turn) = (1.0 - 2.0 * s.unit(0), TAU * s.unit(1));
@@ -32,7 +31,7 @@ fn cones(width: f64, stretch: f64, seed: u64) -> Vec<Cone> {
         let reach = (0.5 * width.to_radians()).tan();
         Cone::Ellipse { axis, a: (x * cosine + y * sine) * (stretch * reach), b: (y * cosine - x * sine) * reach }
     };
-    (0..DIRECTIONS).map(cone).collect()
+    (0..request.directions).map(cone).collect()
 }
 
 /// Latitude-longitude map with about as many texels as a cube of this edge.
@@ -50,7 +49,7 @@ pub(super) fn filters(bench: &Bench, probe: &Probe, size: u32) -> Vec<FilterRow>
     ];
     let mut rows = Vec::new();
     for (width, stretch) in CONES {
-        let cones = cones(width, stretch, bench.request.seed);
+        let cones = cones(width, stretch, bench.request);
         for (layout, map) in &maps {
             rows.extend(compare(layout, map, width, stretch, &cones));
         }

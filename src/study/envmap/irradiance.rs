@@ -27,25 +27,29 @@ pub(super) fn nearest(to: DVec3, places: impl Iterator<Item = DVec3>) -> usize {
     distances.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(k, _)| k)
 }
 
+fn station(p: &Point, place: DVec3, facet: u32) -> Station {
+    Station { place, axis: p.normal, horizon: Some(p.normal), facet }
+}
+
 impl Over {
     pub(super) fn find(bench: &Bench, probes: &[Probe], points: Vec<Point>) -> Self {
+        let free: Vec<Station> = points.iter().map(|p| station(p, p.place, NO_FACET)).collect();
+        let there: Vec<Station> = points.iter().map(|p| station(p, p.place, p.facet)).collect();
+        let truth = bench.arrives(true, &there, Lobe::Cosine);
+        let without = bench.arrives(false, &free, Lobe::Cosine);
+        Self { served: Vec::new(), map: Vec::new(), centre: Vec::new(), without, truth, points }.served(bench, probes)
+    }
+
+    /// The same points served by other maps.
+    pub(super) fn served(&self, bench: &Bench, probes: &[Probe]) -> Self {
+        let points = self.points.clone();
         let served: Vec<usize> =
             points.iter().map(|p| nearest(p.place, probes.iter().map(|c| c.centre.point))).collect();
-        let at =
-            |p: &Point, place: DVec3, facet: u32| Station { place, axis: p.normal, horizon: Some(p.normal), facet };
         let centres: Vec<Station> =
-            points.iter().zip(&served).map(|(p, k)| at(p, probes[*k].centre.point, NO_FACET)).collect();
-        let free: Vec<Station> = points.iter().map(|p| at(p, p.place, NO_FACET)).collect();
-        let there: Vec<Station> = points.iter().map(|p| at(p, p.place, p.facet)).collect();
+            points.iter().zip(&served).map(|(p, k)| station(p, probes[*k].centre.point, NO_FACET)).collect();
         let map = points.iter().zip(&served).map(|(p, k)| probes[*k].irradiance(p.normal)).collect();
-        Self {
-            served,
-            map,
-            centre: bench.arrives(false, &centres, Lobe::Cosine),
-            without: bench.arrives(false, &free, Lobe::Cosine),
-            truth: bench.arrives(true, &there, Lobe::Cosine),
-            points,
-        }
+        let centre = bench.arrives(false, &centres, Lobe::Cosine);
+        Self { points, served, map, centre, without: self.without.clone(), truth: self.truth.clone() }
     }
 
     /// The points for which this holds.
@@ -102,8 +106,7 @@ impl Over {
         let with = |count: usize| {
             let centres = spread(&self.points, count);
             let probes: Vec<Probe> = centres.iter().map(|c| bench.probe(first.centre.moved(*c), size)).collect();
-            let over = Over::find(bench, &probes, self.points.clone());
-            At { x: probes.len() as f64, parts: over.parts(bench) }
+            At { x: probes.len() as f64, parts: self.served(bench, &probes).parts(bench) }
         };
         [1, 2, 4, 8].into_iter().filter(|n| *n <= self.points.len()).map(with).collect()
     }

@@ -29,6 +29,8 @@ pub struct EnvmapRequest {
     pub table: [u32; 2],
     /// Points over the object.
     pub points: usize,
+    /// Directions that fast filters are compared with exact ones in.
+    pub directions: u64,
     /// Rays of the truth at each point, over all replicates.
     pub rays: u64,
     /// Seed of all that is random.

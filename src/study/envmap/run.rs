@@ -91,7 +91,7 @@ pub fn envmap(
     tell("irradiance over the object");
     let object = Over::find(&bench, &probes, points.clone());
     // What is about one map is about the first.
-    let alone = if probes.len() == 1 { None } else { Some(Over::find(&bench, &probes[..1], points.clone())) };
+    let alone = if probes.len() == 1 { None } else { Some(object.served(&bench, &probes[..1])) };
     let one = alone.as_ref().unwrap_or(&object);
     let irradiance = object.parts(&bench);
     tell("distance from the centre");

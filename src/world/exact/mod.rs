@@ -15,9 +15,8 @@ use crate::math::DVec3;
 /// Exact mean over a cone, one value a band.
 ///
 /// Quadrilateral cones: every direction between their sides alike, by solid angle; texels on the sides are clipped. On
-/// faces of a cube that is exact to rounding (1e-12 of the cone). On other layouts the sides of small parts of a texel
-/// are drawn as great circles: shares of single texels are off by less than 1e-5 of the texel; the sum over the cone is
-/// right to rounding all the same, but for texels that lie wholly inside next to cut ones (1e-5 of the cone).
+/// faces of a cube weights add up to the cone's solid angle within 1e-9 of it; on other layouts, where sides of small
+/// parts of a texel are drawn as great circles, within 2e-5.
 ///
 /// Elliptical cones: by solid angle times exp(-2 r^2), as [`super::Pyramid::ewa`] has it, from texels cut up finely
 /// enough that total weights are right to 2e-4; of a fish-eye by 18,432 points. Needles are made at least 1/64 as wide as
