@@ -215,7 +215,7 @@ fn mistakes_are_refused_with_the_mend_and_leave_nothing_behind() {
     let before = std::fs::read_dir(here).expect("a folder").count();
     for (arguments, mend) in [
         ("render builtin:furnace -o out.png", "--solution"),
-        ("render furnace.csv -o out.png", "render SCENE --solution furnace.csv"),
+        ("render furnace.csv -o out.png", "SCENE --solution furnace.csv"),
         ("render builtin:cornell-box --solution furnace.csv -o out.png", "bands"),
         ("render builtin:furnace --solution furnace.csv -o out.jpg", ".png"),
         ("render builtin:furnace --solution furnace.csv -o nowhere/out.png", "create it first"),

@@ -76,7 +76,7 @@ pub fn scene(
     let path = Path::new(spec);
     if path.is_file() && path.extension().is_some_and(|e| e != "toml") && SolutionFormat::of(path).is_ok() {
         return Err(Failure::input(format!(
-            "{spec} is a solution, which has no shape: name the scene, and give --solution {spec}"
+            "{spec} is a solution, which has no shape: write SCENE --solution {spec} in its place"
         ))
         .at(spec));
     }
