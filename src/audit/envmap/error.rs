@@ -8,7 +8,7 @@ pub type Weighted = [Vec<f64>];
 /// `sqrt(sum d^2 / sum t^2)` over places: `d[k][r]` the difference at place k in replicate r, `t` what it is held
 /// against. Squares of means, without the noise in them: products of different replicates only. The interval is that of
 /// the jackknife over replicates; what lies below 0 before the root is 0. `None` where there are no places, fewer than
-/// two replicates, or no light.
+/// three replicates, or no light.
 pub fn relative_error(d: &Weighted, t: &Weighted, confidence: f64) -> Option<Estimate> {
     let count = d.first()?.len();
     let all = squared(d, None)? / squared(t, None).filter(|t| *t > 0.0)?;
@@ -76,14 +76,14 @@ mod tests {
 
     #[test]
     fn parts_share_the_whole() {
-        let t = vec![vec![2.0, 2.0]; 3];
-        let (a, b) = (vec![vec![0.1, 0.1]; 3], vec![vec![-0.3, -0.3]; 3]);
+        let t = vec![vec![2.0; 3]; 3];
+        let (a, b) = (vec![vec![0.1; 3]; 3], vec![vec![-0.3; 3]; 3]);
         let whole: Vec<Vec<f64>> =
             a.iter().zip(&b).map(|(a, b)| a.iter().zip(b).map(|(a, b)| a + b).collect()).collect();
         let e = relative_error(&whole, &t, 0.95).expect("light").value;
         let shares = weighted_share(&whole, &a, &t).expect("a") + weighted_share(&whole, &b, &t).expect("b");
         assert!((e - 0.1).abs() < 1e-12 && (shares - e * e).abs() < 1e-12);
         assert_eq!(relative_error(&[], &[], 0.95), None);
-        assert_eq!(relative_error(&a, &vec![vec![0.0; 2]; 3], 0.95), None);
+        assert_eq!(relative_error(&a, &vec![vec![0.0; 3]; 3], 0.95), None);
     }
 }
