@@ -1,4 +1,4 @@
-//! Reflection cones filtered by squares from a pyramid of images: the fast way, and a rough one [G86].
+//! Reflection cones filtered by squares from a pyramid of images: the fast way, and a rough one Greene (1986).
 
 use super::cone::{Cone, Part, triangle};
 use super::layout::{Face, Layout, Shape, Spot};

@@ -1,5 +1,5 @@
 //! Maps from maps: other layouts and sizes, and perspective pictures, each texel or pixel the exact mean over what it
-//! shows [G86].
+//! shows Greene (1986).
 
 use super::cone::Cone;
 use super::exact::exact_into;

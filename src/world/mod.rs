@@ -1,4 +1,4 @@
-//! World projections: what is seen from one point in all directions, laid out on planes, filtered and looked up [G86].
+//! World projections: what is seen from one point in all directions, laid out on planes, filtered and looked up, after Greene (1986).
 //!
 //! Knows directions and values only; what is projected, and how right it is, others know.
 

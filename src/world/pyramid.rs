@@ -1,4 +1,4 @@
-//! Pyramids of images: a map at half the size, a quarter, and so on, panel by panel (Williams 1983) [G86].
+//! Pyramids of images: a map at half the size, a quarter, and so on, panel by panel (Williams 1983) Greene (1986).
 
 use super::layout::{Layout, Shape, Spot};
 use super::map::WorldMap;

@@ -1,4 +1,4 @@
-//! The hybrid that [G86] recommends: rays find what is near, the map stands for what is far.
+//! The hybrid that Greene (1986) recommends: rays find what is near, the map stands for what is far.
 
 use super::gather::{Lobe, Station, for_batches};
 use crate::math::DVec3;

@@ -1,5 +1,5 @@
 //! Environment maps taken apart: what one world projection says of the light at an object, against what rays from the
-//! object itself say, and why the two differ [G86].
+//! object itself say, and why the two differ, after Greene (1986).
 //!
 //! Everything is in mean radiosity B of what is gathered: over a cosine-weighted hemisphere that is the irradiance; of a
 //! cone, pi times its mean radiance.

@@ -44,7 +44,7 @@ pub struct ProjectArgs {
     /// Object or surface that is left out, so that the world is seen from within it.
     #[arg(long, value_name = "NAME")]
     pub without: Option<String>,
-    /// Draw it from a cube of this size by filtering, as [G86] does, and say how far that is from rays.
+    /// Draw it from a cube of this size by filtering, as Greene (1986) does, and say how far that is from rays.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8192))]
     pub from_cube: Option<u32>,
     /// What is seen where the scene is open: a picture of a world, .exr or .png.

@@ -1,4 +1,4 @@
-//! An audit of environment maps as a page: the verdict, what the error is made of, what it depends on, pictures [G86].
+//! An audit of environment maps as a page: the verdict, what the error is made of, what it depends on, pictures, after Greene (1986).
 
 mod charts;
 mod clock;

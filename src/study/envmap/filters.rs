@@ -1,4 +1,4 @@
-//! Fast filters against the exact one: cube against latitude-longitude, the claim of [G86], measured.
+//! Fast filters against the exact one: cube against latitude-longitude, the claim of Greene (1986), measured.
 
 use super::bench::{Bench, Probe};
 use super::record::{FilterRow, RoundTripRow};

@@ -22,16 +22,16 @@ pub(super) fn findings(record: &EnvmapRecord) -> Vec<String> {
 
 fn over(record: &EnvmapRecord) -> String {
     let p = &record.irradiance;
-    let main = (0..3).max_by(|a, b| p.shares[*a].total_cmp(&p.shares[*b])).unwrap_or(1);
+    let main = (0..3).max_by(|a, b| p.shares[*a].total_cmp(&p.shares[*b])).filter(|k| p.shares[*k] > 0.5);
+    let most = main.map_or(String::new(), |k| format!(" Most of it is {}.", PARTS[k]));
     format!(
-        "Irradiance over \"{}\" is wrong by {} (map {}, parallax {}, object {}), on the whole {:+.1} %. Most of it is {}.",
+        "Irradiance over \"{}\" is wrong by {} (map {}, parallax {}, object {}), on the whole {:+.1} %.{most}",
         record.object,
         shown(p.total.as_ref()),
         shown(p.map.as_ref()),
         shown(p.parallax.as_ref()),
         shown(p.occlusion.as_ref()),
-        100.0 * p.bias,
-        PARTS[main]
+        100.0 * p.bias
     )
 }
 

@@ -1,4 +1,4 @@
-//! The audit of environment maps: world projections from centres in an object against rays from its surface [G86].
+//! The audit of environment maps: world projections from centres in an object against rays from its surface, after Greene (1986).
 
 mod bench;
 mod filters;

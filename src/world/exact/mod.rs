@@ -1,4 +1,4 @@
-//! Reflection cones filtered texel by texel: the yardstick of the fast filters [G86].
+//! Reflection cones filtered texel by texel: the yardstick of the fast filters, after Greene (1986).
 //!
 //! The map is taken for what it holds, one value over the whole of each texel.
 
