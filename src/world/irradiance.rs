@@ -10,6 +10,8 @@ use std::f64::consts::TAU;
 
 /// Rows that are summed as one; the same on any number of threads.
 const ROWS: usize = 16;
+/// Normals that are summed together.
+const AT_ONCE: usize = 2048;
 
 /// Irradiance, band by band, of a surface with this normal at the world centre: W/m^2 where the map holds radiance in
 /// W/(m^2 sr). Texels wholly above the horizon enter by their moments, those it cuts by Lambert's formula: exact for a map
@@ -21,6 +23,11 @@ pub fn irradiance_exact(map: &WorldMap, normal: DVec3) -> Vec<f64> {
 
 /// Irradiances for unit normals: normal-major, bands side by side.
 pub(super) fn irradiances(map: &WorldMap, normals: &[DVec3]) -> Vec<f64> {
+    // So many at a time: every block of rows keeps sums for each of them.
+    normals.chunks(AT_ONCE).flat_map(|some| at_once(map, some)).collect()
+}
+
+fn at_once(map: &WorldMap, normals: &[DVec3]) -> Vec<f64> {
     let shape = map.shape();
     let rows = shape.panels() * shape.height();
     let parts: Vec<Vec<f64>> = (0..rows.div_ceil(ROWS))

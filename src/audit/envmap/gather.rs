@@ -134,7 +134,7 @@ pub(super) fn for_batches(station: &Station, lobe: Lobe, stream: Stream, rays: u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_3, PI};
+    use std::f64::consts::FRAC_PI_3;
 
     #[test]
     fn cones_are_even_and_as_wide_as_asked() {
@@ -150,6 +150,6 @@ mod tests {
         }
         // The mean cosine of a cap is (1 + cos) / 2.
         assert!((z / f64::from(n * n) - 0.75).abs() < 1e-5 && (least - 0.5).abs() < 0.01, "{z} {least}");
-        assert!((Lobe::Cosine.direction(0.5, 0.5).z - 1.0).abs() < 1e-12 && PI > 3.0);
+        assert!((Lobe::Cosine.direction(0.5, 0.5).z - 1.0).abs() < 1e-12);
     }
 }

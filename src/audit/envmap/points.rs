@@ -29,11 +29,12 @@ pub fn over(stage: &Stage, surfaces: &[u32], count: usize, stream: Stream) -> Ve
     let total: f64 = patches.iter().map(|i| stage.patches[*i].area).sum();
     let mut points = Vec::with_capacity(count);
     let mut before = 0.0;
+    let start = stream.unit(0);
     for i in patches {
         let patch = &stage.patches[i];
         let Some(map) = PointMap::new(&patch.region.pieces) else { continue };
-        // The k-th point lies where (k + 1/2) / count of the area has gone by.
-        while points.len() < count && (points.len() as f64 + 0.5) / count as f64 * total < before + patch.area {
+        // The k-th point lies where (k + start) / count of the area has gone by.
+        while points.len() < count && (points.len() as f64 + start) / count as f64 * total < before + patch.area {
             let k = points.len() as u64;
             let place = map.at(unit(stream, k, 0), unit(stream, k, 1));
             points.push(Point { patch: i as u32, facet: patch.facet, place, normal: patch.normal });

@@ -77,6 +77,9 @@ fn check(args: &EnvmapArgs) -> Result<[f64; 2], Failure> {
     if args.stated_error.0 <= 0.0 {
         return Err(Failure::input("--stated-error must be above 0: 5% for example"));
     }
+    if args.table.0[0] > 512 || args.table.0[1] > 256 {
+        return Err(Failure::input("--table: light by normal has nothing fine in it; 512x256 is the largest"));
+    }
     match args.shading.as_slice() {
         [dc, sc] if [dc, sc].iter().all(|x| x.is_finite() && **x >= 0.0) => Ok([*dc, *sc]),
         _ => Err(Failure::input("--shading: write two numbers that are not below 0, DC,SC (0.5,0.5)")),

@@ -18,6 +18,10 @@ use std::path::Path;
 
 /// Most texels of one map: three quarters of a gigabyte of numbers.
 const MOST_TEXELS: u64 = 1 << 26;
+/// Most samples where every texel shows more than one thing: two gigabytes of them.
+const MOST_SAMPLES: u64 = 1 << 29;
+/// Height of the largest diffuse map.
+const LARGEST_TABLE: u32 = 256;
 
 /// What comes of it, and what is said of it.
 struct Made {
@@ -88,21 +92,31 @@ fn check(args: &ProjectArgs) -> Result<(), Failure> {
     if args.turning_to.is_some() && args.layout != LayoutChoice::Perspective {
         return Err(Failure::input("--turning-to is for --layout perspective: leave it out"));
     }
-    if args.diffuse && (args.layout != LayoutChoice::Latlong || args.sky.is_some() && args.from_cube.is_some()) {
+    if args.diffuse && args.layout != LayoutChoice::Latlong {
         return Err(Failure::input("--diffuse is stored in latitude-longitude: add --layout latlong --size 20"));
+    }
+    if args.diffuse && args.size > LARGEST_TABLE {
+        return Err(Failure::input(format!(
+            "--diffuse: light by normal has nothing fine in it; choose a --size of at most {LARGEST_TABLE} (20 is usual)"
+        )));
     }
     if matches!(args.tone, ToneChoice::Linear) {
         return Err(Failure::input("--tone linear: write an .exr, which holds the numbers themselves"));
     }
-    let texels = shape(args).map_or(0, |s| s.texels() as u64);
+    let side = u64::from(args.samples) * u64::from(args.samples);
+    let height = u64::from(args.size);
+    let texels = shape(args).map_or((4 * height).div_ceil(3) * height, |s| s.texels() as u64);
     let cube = args.from_cube.map_or(0, |n| 6 * u64::from(n) * u64::from(n));
-    if texels.max(cube) > MOST_TEXELS {
-        return Err(Failure::input(format!(
-            "--size {}: {} texels are more than {}; choose a smaller size",
-            args.size,
-            inputs::thousands(texels.max(cube)),
-            inputs::thousands(MOST_TEXELS)
-        )));
+    for (option, n, texels) in [("--size", args.size, texels), ("--from-cube", args.from_cube.unwrap_or(0), cube)] {
+        if texels > MOST_TEXELS || texels * side > MOST_SAMPLES {
+            return Err(Failure::input(format!(
+                "{option} {n}: {} texels of up to {side} samples each are more than {} or {} samples; choose a smaller \
+                 size or fewer --samples",
+                inputs::thousands(texels),
+                inputs::thousands(MOST_TEXELS),
+                inputs::thousands(MOST_SAMPLES)
+            )));
+        }
     }
     Ok(())
 }

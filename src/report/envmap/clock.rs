@@ -55,7 +55,7 @@ pub(super) fn filters(record: &EnvmapRecord) -> Vec<FilterLine> {
         width: round_number(f.width),
         stretch: round_number(f.stretch),
         error: share(f.error),
-        near_poles: share(f.near_poles),
+        near_poles: f.near_poles.map_or(UNKNOWN.into(), share),
         worst: share(f.worst),
         fast: micro(f.seconds),
         exact: micro(f.exact_seconds),

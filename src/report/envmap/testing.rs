@@ -78,7 +78,7 @@ fn filters(n: &Numbers) -> Vec<FilterRow> {
                         width,
                         stretch,
                         error,
-                        near_poles,
+                        near_poles: Some(near_poles),
                         worst,
                         seconds,
                         exact_seconds,
@@ -88,7 +88,7 @@ fn filters(n: &Numbers) -> Vec<FilterRow> {
         }
     }
     let known = &mut rows[0];
-    (known.error, known.near_poles, known.worst) = (0.0123, 0.0456, 0.789);
+    (known.error, known.near_poles, known.worst) = (0.0123, Some(0.0456), 0.789);
     (known.seconds, known.exact_seconds) = (2.5e-6, 1e-3);
     rows
 }

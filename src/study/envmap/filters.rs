@@ -81,7 +81,7 @@ fn compare(layout: &'static str, map: &Pyramid, width: f64, stretch: f64, cones:
                 d += (fast[k] - right[k]).powi(2);
                 t += right[k].powi(2);
             }
-            if t > 0.0 { (d / t).sqrt() } else { 0.0 }
+            (t > 0.0).then(|| (d / t).sqrt())
         };
         let size = (right.iter().map(|x| x * x).sum::<f64>() / right.len().max(1) as f64).sqrt();
         let worst = fast.iter().zip(&right).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -90,7 +90,7 @@ fn compare(layout: &'static str, map: &Pyramid, width: f64, stretch: f64, cones:
             filter,
             width,
             stretch,
-            error: error(&|_| true),
+            error: error(&|_| true).unwrap_or(0.0),
             near_poles: error(&|k| near(&&cones[k])),
             worst: if size > 0.0 { worst / size } else { 0.0 },
             seconds,

@@ -37,20 +37,34 @@ fn over(record: &EnvmapRecord) -> String {
 
 fn range(record: &EnvmapRecord) -> String {
     let r = &record.range;
-    let metres = |x: Option<f64>| x.map_or("nowhere".to_string(), |x| format!("{x:.3} m"));
     let stated = percent(r.stated);
-    match (r.within, r.open) {
-        (Some(x), true) => {
-            format!("In the open the map's irradiance stays within {stated} up to {x:.3} m, the farthest tried.")
+    let farthest = r.curve.last().map_or(0.0, |a| a.x);
+    let metres = |x: Option<f64>| match x {
+        Some(x) if x >= farthest => format!("{x:.3} m or farther"),
+        Some(x) => format!("{x:.3} m"),
+        None => "nowhere".to_string(),
+    };
+    let between = format!("surely {}, at most {}", metres(r.between[0]), metres(r.between[1]));
+    match (r.within, r.curve.first()) {
+        (Some(x), _) if r.open => {
+            format!(
+                "In the open the map's irradiance stays within {stated} up to {x:.3} m, the farthest tried ({between})."
+            )
         }
-        (Some(x), false) => format!(
-            "In the open the map's irradiance stays within {stated} up to {x:.3} m from the centre (surely {}, at most {}).",
-            metres(r.between[0]),
-            metres(r.between[1])
+        (Some(x), _) => {
+            format!(
+                "In the open the map's irradiance stays within {stated} up to {x:.3} m from the centre ({between})."
+            )
+        }
+        (None, Some(first)) if first.parts.total.is_some() => format!(
+            "In the open the map's irradiance is beyond {stated} at {:.4} m from its centre already: wrong by {} (map {}, \
+             parallax {}).",
+            first.x,
+            shown(first.parts.total.as_ref()),
+            shown(first.parts.map.as_ref()),
+            shown(first.parts.parallax.as_ref())
         ),
-        (None, _) => format!(
-            "The map's irradiance is wrong by more than {stated} already next to its centre: the map itself is too coarse."
-        ),
+        (None, _) => "How far from its centre the map can be used is not known: too little light arrives there.".into(),
     }
 }
 
@@ -71,11 +85,11 @@ fn several(record: &EnvmapRecord) -> Option<String> {
     let (first, last) = (record.several.first()?, record.several.last()?);
     (last.x > first.x).then(|| {
         format!(
-            "With {} centres spread over the object instead of {}, each point served by the nearest: {} instead of {}.",
+            "With centres in the middles of the parts of its surface, each point served by the nearest: one is wrong by {}, \
+             {} are by {}.",
+            shown(first.parts.total.as_ref()),
             last.x,
-            first.x,
-            shown(last.parts.total.as_ref()),
-            shown(first.parts.total.as_ref())
+            shown(last.parts.total.as_ref())
         )
     })
 }
@@ -83,34 +97,39 @@ fn several(record: &EnvmapRecord) -> Option<String> {
 fn hybrid(record: &EnvmapRecord) -> Option<String> {
     let all: Vec<(f64, &Estimate)> = record.hybrid.iter().filter_map(|h| Some((h.reach, h.total.as_ref()?))).collect();
     let (first, last) = (all.first()?, all.last()?);
+    let enough = all.iter().find(|(_, e)| e.value <= record.range.stated);
+    let enough = enough.map_or(format!("rays up to {:.3} m do not bring it below", last.0), |(reach, e)| {
+        format!("with rays up to {reach:.3} m it is wrong by {}, below", shown(Some(e)))
+    });
     Some(format!(
-        "The hybrid (rays up to {:.3} m, the map beyond) is wrong by {}; without rays {}.",
-        last.0,
-        shown(Some(last.1)),
-        shown(Some(first.1))
+        "The hybrid, rays near by and the map beyond: without rays wrong by {}; {enough} {}.",
+        shown(Some(first.1)),
+        percent(record.range.stated)
     ))
 }
 
 /// The paper's two claims about filters, as they came out here.
 fn filters(rows: &[FilterRow]) -> Vec<String> {
-    let mean = |of: &dyn Fn(&FilterRow) -> bool, what: fn(&FilterRow) -> f64| {
-        let chosen: Vec<f64> = rows.iter().filter(|r| of(r)).map(what).collect();
-        (chosen.iter().map(|x| x * x).sum::<f64>() / chosen.len().max(1) as f64).sqrt()
+    let mean = |of: &dyn Fn(&FilterRow) -> bool, what: fn(&FilterRow) -> Option<f64>| {
+        let chosen: Vec<f64> = rows.iter().filter(|r| of(r)).filter_map(what).collect();
+        let known = !chosen.is_empty();
+        known.then(|| (chosen.iter().map(|x| x * x).sum::<f64>() / chosen.len() as f64).sqrt())
     };
+    let told = |x: Option<f64>| x.map_or("unknown".into(), percent);
     if rows.is_empty() {
         return Vec::new();
     }
     let one = |filter: &'static str| {
-        let cube = mean(&|r| r.filter == filter && r.layout == "cube", |r| r.error);
-        let other = mean(&|r| r.filter == filter && r.layout == "lat-long", |r| r.error);
+        let cube = mean(&|r| r.filter == filter && r.layout == "cube", |r| Some(r.error));
+        let other = mean(&|r| r.filter == filter && r.layout == "lat-long", |r| Some(r.error));
         let poles = mean(&|r| r.filter == filter && r.layout == "lat-long", |r| r.near_poles);
         format!(
             "By the {} filter, cones of 1 to 16 degrees are wrong by {} in the cube and {} in latitude-longitude ({} near \
              the poles), against exact filtering of the same map.",
             if filter == "box" { "box" } else { "elliptical weighted average" },
-            percent(cube),
-            percent(other),
-            percent(poles)
+            told(cube),
+            told(other),
+            told(poles)
         )
     };
     vec![one("box"), one("ewa")]

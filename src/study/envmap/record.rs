@@ -90,8 +90,8 @@ pub struct FilterRow {
     pub stretch: f64,
     /// Relative error against the exact filter over all directions.
     pub error: f64,
-    /// The same of the directions within 30 degrees of the poles.
-    pub near_poles: f64,
+    /// The same of the directions within 30 degrees of the poles; `None` where none was.
+    pub near_poles: Option<f64>,
     /// Largest error at any direction, over the root mean square.
     pub worst: f64,
     /// Seconds of one look-up, one thread.

@@ -24,16 +24,12 @@ pub(super) fn reflection(bench: &Bench, probes: &[Probe], points: &[Point]) -> V
     let seen = mirrored(bench.request.camera.eye, points);
     let serves: Vec<&Probe> =
         seen.iter().map(|(p, _)| &probes[nearest(p.place, probes.iter().map(|c| c.centre.point))]).collect();
-    let at = |(p, axis): &(Point, DVec3), place: DVec3, facet: u32| Station {
-        place,
-        axis: *axis,
-        horizon: Some(p.normal),
-        facet,
-    };
-    let centres: Vec<Station> =
-        seen.iter().zip(&serves).map(|(s, probe)| at(s, probe.centre.point, NO_FACET)).collect();
-    let free: Vec<Station> = seen.iter().map(|s| at(s, s.0.place, NO_FACET)).collect();
-    let there: Vec<Station> = seen.iter().map(|s| at(s, s.0.place, s.0.facet)).collect();
+    // A map knows of no surface: its cone is whole. What the surface cuts off is the object's doing.
+    let at = |(_, axis): &(Point, DVec3), place: DVec3| Station { place, axis: *axis, horizon: None, facet: NO_FACET };
+    let centres: Vec<Station> = seen.iter().zip(&serves).map(|(s, probe)| at(s, probe.centre.point)).collect();
+    let free: Vec<Station> = seen.iter().map(|s| at(s, s.0.place)).collect();
+    let there: Vec<Station> =
+        seen.iter().map(|s| Station { horizon: Some(s.0.normal), facet: s.0.facet, ..at(s, s.0.place) }).collect();
     let cone = |degrees: f64| {
         let half = 0.5 * degrees.to_radians();
         let map: Vec<f64> = seen.iter().zip(&serves).map(|((_, axis), probe)| probe.glossy(*axis, half)).collect();

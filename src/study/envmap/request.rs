@@ -2,7 +2,6 @@
 
 use crate::math::DVec3;
 use crate::render::Centre;
-use crate::scene::Stage;
 use crate::solution::Replicates;
 use crate::view::Camera;
 
@@ -67,13 +66,6 @@ impl Light {
         let of = |k: usize| all.iter().map(|r| r[k]).sum::<f64>() / all.len() as f64;
         (0..all.first().map_or(0, Vec::len)).map(of).collect()
     }
-
-    /// Luminance of each patch in each replicate.
-    pub(super) fn luminances(&self, stage: &Stage) -> Vec<Vec<f64>> {
-        let of =
-            |values: &Vec<f64>| values.chunks(self.radiosities.bands).map(|b| stage.photometry.luminance(b)).collect();
-        self.radiosities.replicates.iter().map(of).collect()
-    }
 }
 
 /// Why there is no audit.
@@ -90,6 +82,12 @@ pub enum EnvmapError {
     /// It takes no part.
     #[error("\"{name}\" does not stand there in this state: choose another --state or --object")]
     Absent {
+        /// Name asked for.
+        name: String,
+    },
+    /// Nothing of it is free.
+    #[error("\"{name}\" is covered all over by what touches it: no light arrives on it; choose another --object")]
+    Covered {
         /// Name asked for.
         name: String,
     },

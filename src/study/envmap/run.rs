@@ -20,6 +20,8 @@ use std::time::Instant;
 /// Edge of the cubes that many centres are compared with.
 const QUICK: u32 = 64;
 
+/// Edge of the cube that tells how much room there is.
+const NEAR: u32 = 32;
 /// Pixels across the spheres.
 const SPHERE: u32 = 96;
 
@@ -39,6 +41,7 @@ pub fn object(stage: &Stage, name: &str) -> Result<(Vec<u32>, DVec3, f64), Envma
     let surfaces = stage.surfaces_named(name);
     if surfaces.is_empty() {
         let mut known: Vec<&str> = stage.surfaces.iter().map(|s| s.object.as_str()).collect();
+        known.sort_unstable();
         known.dedup();
         return Err(EnvmapError::NoObject { name: name.into(), known: known.join(", ") });
     }
@@ -67,26 +70,27 @@ pub fn envmap(
     let (surfaces, middle, radius) = object(stage, &request.object)?;
     let bare_stage = stage.without(&surfaces);
     let (full, bare) = (Session::open(stage, kernel)?, Session::open(&bare_stage, kernel)?);
-    let luminances = light.luminances(stage);
-    let replicates = luminances.len() as f64;
-    let mean: Vec<f64> =
-        (0..stage.patch_count()).map(|i| luminances.iter().map(|y| y[i]).sum::<f64>() / replicates).collect();
+    let radiosities = light.mean();
+    let bands = light.radiosities.bands;
+    // The question is about this light: map and rays see the same radiosities, whatever their own error is.
+    let mean: Vec<f64> = radiosities.chunks(bands).map(|b| stage.photometry.luminance(b)).collect();
+    let luminances = vec![mean.clone(); light.radiosities.count()];
     let stream = Stream::new(Role::Judge, request.seed);
     let bench = Bench { request, full: full.tracer(), bare: bare.tracer(), luminances, mean, stream };
 
     let places = if request.centres.is_empty() { vec![middle] } else { request.centres.clone() };
     let mut speed = Vec::new();
-    let radiosities = light.mean();
-    let bands = light.radiosities.bands;
     let made = places.iter().map(|p| probe(&bench, request.axes.moved(*p), &radiosities, bands, &mut speed));
     let (probes, coloured): (Vec<Probe>, Vec<Coloured>) = made.unzip();
+    let near = bench.view(&probes[0].centre, Layout::Cube, NEAR).distances;
+    let free = f64::from(near.iter().copied().fold(f32::INFINITY, f32::min));
     if let Some(dark) = probes.iter().find(|p| p.pyramid.base().values().iter().all(|v| *v == 0.0)) {
         let [x, y, z] = dark.centre.point.to_array();
         return Err(EnvmapError::Dark { x, y, z });
     }
     let points = over(stage, &surfaces, request.points, stream.child(2));
     if points.is_empty() {
-        return Err(EnvmapError::Absent { name: request.object.clone() });
+        return Err(EnvmapError::Covered { name: request.object.clone() });
     }
     tell("irradiance over the object");
     let object = Over::find(&bench, &probes, points.clone());
@@ -130,8 +134,9 @@ pub fn envmap(
     let [dc, sc] = request.shading;
     let mut shader =
         Shader { maps: &coloured, radiosities: &radiosities, bands, dc, sc, reach: radius, seed: request.seed };
-    // A cube's own inner sphere, where the object is a cube.
-    let mut pictures = shader.spheres(&bench.bare, request.camera.eye, radius / 3f64.sqrt(), SPHERE);
+    // A cube's own inner sphere, where the object is a cube and the room wide enough.
+    let sphere = (radius / 3f64.sqrt()).min(0.9 * free);
+    let mut pictures = shader.spheres(&bench.bare, request.camera.eye, sphere, SPHERE);
     pictures.extend(shader.in_scene(&bench.full, &request.camera, &surfaces));
     Ok(Audited { record, pictures })
 }

@@ -18,6 +18,8 @@ pub(super) struct Drawn {
     pub adapts_to: Vec<(f64, f64, bool)>,
     /// What the numbers are, for whoever opens the file.
     pub comments: String,
+    /// True where the numbers are irradiances.
+    pub is_irradiance: bool,
     /// Further channels, texel by texel as `kind` is, named.
     pub more: Vec<(String, Vec<f32>)>,
 }
@@ -31,6 +33,22 @@ pub(super) enum Kind {
 }
 
 impl Drawn {
+    /// Irradiances are shown as a white matt surface is seen under them, of radiance E / pi; numbers stay as they are.
+    pub(super) fn shown_as_white_matt(&mut self) {
+        self.is_irradiance = true;
+        if let Some(map) = self.as_radiance() {
+            self.adapts_to = texels(&map, &self.photometry);
+        }
+    }
+
+    /// A map of radiances, whatever it holds; `None` of a flat picture.
+    fn as_radiance(&self) -> Option<WorldMap> {
+        let Kind::Map(map) = &self.kind else { return None };
+        let factor = if self.is_irradiance { (1.0 / PI) as f32 } else { 1.0 };
+        let values = map.values().iter().map(|v| v * factor).collect();
+        Some(WorldMap::new(map.shape(), map.bands(), values))
+    }
+
     /// Pixels across and down.
     pub(super) fn size(&self) -> [u32; 2] {
         match &self.kind {
@@ -72,9 +90,10 @@ impl Drawn {
         let viewer = args.viewing.onlooker(operator).look(&seen, &luminances, &lamps);
         let shade = ToneMap::new(viewer, &self.photometry);
         let clipped = shade.clipped(self.adapts_to.iter().map(|a| (a.0, a.1)));
-        let raster: Raster = match &self.kind {
-            Kind::Map(map) => paint_world(map, &shade),
-            Kind::Flat([w, h], values) => paint_radiances(*w, *h, self.photometry.bands.len(), values, &shade),
+        let raster: Raster = match (&self.kind, self.as_radiance()) {
+            (Kind::Flat([w, h], values), _) => paint_radiances(*w, *h, self.photometry.bands.len(), values, &shade),
+            (Kind::Map(map), None) => paint_world(map, &shade),
+            (Kind::Map(_), Some(map)) => paint_world(&map, &shade),
         };
         let bytes = png(raster.width, raster.height, &raster.rgba).map_err(|e| Failure::input(e.to_string()))?;
         Ok((bytes, vec![crate::report::tone_words(&shade.viewer, clipped)]))

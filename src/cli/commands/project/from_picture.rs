@@ -5,9 +5,10 @@ use super::{Made, shape, sky, turning};
 use crate::cli::args::ProjectArgs;
 use crate::cli::exit::Failure;
 use crate::io::world_map::ReadMap;
-use crate::math::DVec3;
+use crate::math::{DMat3, DVec3};
+use crate::render::Centre;
 use crate::view::{Camera, Photometry};
-use crate::world::{DiffuseMap, Layout, Shape, WorldMap, exact_picture, resample, round_trip};
+use crate::world::{DiffuseMap, Layout, Shape, WorldMap, exact_picture, resample, rotated, round_trip};
 use serde_json::json;
 use std::path::Path;
 
@@ -25,6 +26,7 @@ pub(super) fn made(args: &ProjectArgs, source: &Path) -> Result<Made, Failure> {
     let ReadMap { map, bands, how } = sky::open(source, args.given)?;
     let photometry = photometry(&bands);
     let from = map.shape();
+    let map = if shape(args).is_some() { turned(args, map)? } else { map };
     let mut words = vec![format!("{}: {how}", source.display())];
     let mut json = json!({ "source": source.display().to_string(), "read_as": how });
     let (kind, comments) = match shape(args) {
@@ -56,17 +58,38 @@ pub(super) fn made(args: &ProjectArgs, source: &Path) -> Result<Made, Failure> {
         Kind::Flat(..) => texels(&map, &photometry),
     };
     let comments = format!("{comments} Made from {}.", source.file_name().unwrap_or_default().to_string_lossy());
-    Ok(Made { drawn: Drawn { kind, photometry, adapts_to, comments, more: Vec::new() }, words, json })
+    let mut drawn = Drawn { kind, photometry, adapts_to, comments, is_irradiance: false, more: Vec::new() };
+    if args.diffuse {
+        drawn.shown_as_white_matt();
+    }
+    Ok(Made { drawn, words, json })
+}
+
+/// The map seen by an observer who looks elsewhere.
+fn turned(args: &ProjectArgs, map: WorldMap) -> Result<WorldMap, Failure> {
+    if args.towards.is_none() && args.up.is_none() {
+        return Ok(map);
+    }
+    let (front, up) = directions(args)?;
+    let axes = Centre::new(DVec3::ZERO, front, up).frame;
+    // What a fish-eye does not show may be in front now.
+    let layout = if let Layout::Fisheye { .. } = map.shape().layout { Layout::Cube } else { map.shape().layout };
+    Ok(rotated(&map, DMat3::from_cols(axes.x, axes.y, axes.z), Shape { layout, ..map.shape() }))
+}
+
+/// Front and up as given; both, with an up that is not the front.
+fn directions(args: &ProjectArgs) -> Result<(DVec3, DVec3), Failure> {
+    let (front, up) = (args.towards.map_or(DVec3::Y, |t| t.0), args.up.map_or(DVec3::Z, |u| u.0));
+    if front.cross(up).length() <= 1e-9 * (front.length() * up.length()).max(1e-300) {
+        return Err(Failure::input("--towards: the front must be another direction than up; give --up too"));
+    }
+    Ok((front, up))
 }
 
 /// What a camera in the middle of the picture sees.
 fn perspective(args: &ProjectArgs, map: &WorldMap, words: &mut Vec<String>) -> Result<Kind, Failure> {
     let size = [(args.size * 4).div_ceil(3), args.size];
-    let target = args.towards.map_or(DVec3::Y, |t| t.0);
-    let up = args.up.map_or(DVec3::Z, |u| u.0);
-    if target.cross(up).length() <= 1e-9 * target.length().max(1.0) {
-        return Err(Failure::input("--towards: the front must be another direction than up; give --up too"));
-    }
+    let (target, up) = directions(args)?;
     let camera = Camera { name: "turned".into(), eye: DVec3::ZERO, target, up, fov: args.field.unwrap_or(45.0), size };
     if let Some(end) = args.turning_to {
         let blur = turning::blurred(map, &camera, end.0, |d| d)?;

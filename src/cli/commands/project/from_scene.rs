@@ -6,8 +6,9 @@ use crate::cli::args::ProjectArgs;
 use crate::cli::commands::{inputs, lit::Lit, standpoint};
 use crate::cli::console::Console;
 use crate::cli::exit::Failure;
+use crate::math::DVec3;
 use crate::raycast::{KernelKind, Tracer};
-use crate::render::{Centre, WorldView, luminance, resized};
+use crate::render::{Centre, Mesh, Seen as PictureShares, WorldView, luminance, resized};
 use crate::scene::Stage;
 use crate::solution::Radiosity;
 use crate::study::Receivers;
@@ -19,6 +20,8 @@ use std::time::Instant;
 
 /// The smallest cube that a diffuse map is convolved from where its own size says nothing.
 const LEAST_CUBE: u32 = 128;
+/// The largest cube that is cast unasked.
+const LARGEST_CUBE: u32 = 2048;
 
 /// A scene that is looked at.
 struct Scene<'a> {
@@ -28,6 +31,8 @@ struct Scene<'a> {
     radiosity: Radiosity,
     /// What is seen where nothing is.
     sky: Option<WorldMap>,
+    /// Up in the scene, whichever way the observer looks.
+    up: DVec3,
 }
 
 /// What of the scene is seen in a layout.
@@ -54,7 +59,8 @@ pub(super) fn made(args: &ProjectArgs, kernel: KernelKind, console: &Console) ->
     let place = args.at.map_or(camera.eye, |p| p.0);
     let centre = standpoint::centre(&camera, place, args.towards.map(|d| d.0), args.up.map(|d| d.0))?;
     let sky = args.sky.as_deref().map(|file| sky::read(file, args.given, &stage.photometry.bands)).transpose()?;
-    let scene = Scene { args, tracer, centre, radiosity, sky };
+    let up = args.up.map_or(camera.up, |u| u.0);
+    let scene = Scene { args, tracer, centre, radiosity, sky, up };
     match shape(args) {
         Some(_) if args.diffuse => scene.diffuse(&stage),
         Some(shape) => scene.laid_out(&stage, shape),
@@ -68,7 +74,7 @@ impl Scene<'_> {
         let view = WorldView::cast(&self.tracer, &self.centre, shape, self.args.samples);
         let mut map = view.radiances(&self.radiosity.values, self.radiosity.bands);
         if let Some(sky) = &self.sky {
-            map = sky::behind(&map, &view.open(), sky, &self.centre);
+            map = sky::behind(&map, &view.open(), sky, &self.centre, self.up);
         }
         Seen { map, view, seconds: begin.elapsed().as_secs_f64() }
     }
@@ -92,10 +98,7 @@ impl Scene<'_> {
     }
 
     fn drawn(&self, stage: &Stage, kind: Kind, view: &WorldView, comments: &str) -> Drawn {
-        let shares = view.shares(stage.patch_count());
-        let lamps = Receivers::patches(stage).lamps();
-        let patches = luminance(&stage.photometry, &self.radiosity).into_iter().zip(shares).zip(lamps);
-        let mut adapts_to: Vec<(f64, f64, bool)> = patches.map(|((y, s), lamp)| (y, s, lamp)).collect();
+        let mut adapts_to = self.patches(stage, &view.shares(stage.patch_count()));
         if let (Some(_), Kind::Map(map)) = (&self.sky, &kind) {
             adapts_to = texels(map, &stage.photometry);
         }
@@ -110,7 +113,7 @@ impl Scene<'_> {
             self.centre.frame.z.to_array()
         );
         let photometry = stage.photometry.clone();
-        Drawn { kind, photometry, adapts_to, comments, more: Vec::new() }
+        Drawn { kind, photometry, adapts_to, comments, is_irradiance: false, more: Vec::new() }
     }
 
     /// In a layout: by rays, or filtered from a cube with its distance from rays.
@@ -153,10 +156,7 @@ impl Scene<'_> {
         let map = WorldMap::new(shape, table.bands(), values);
         let comments = "Irradiance over each normal, W/m^2 per band, linear: a diffuse illumination map.";
         let mut drawn = self.drawn(stage, Kind::Map(map), &seen.view, comments);
-        if let Kind::Map(map) = &drawn.kind {
-            // Seen as a picture, it is adapted to by itself.
-            drawn.adapts_to = texels(map, &stage.photometry);
-        }
+        drawn.shown_as_white_matt();
         Ok(Made { drawn, words, json })
     }
 
@@ -164,51 +164,73 @@ impl Scene<'_> {
     fn perspective(&self, stage: &Stage, camera: &Camera) -> Result<Made, Failure> {
         let args = self.args;
         let fov = args.field.unwrap_or(if stage.cameras.is_empty() { 45.0 } else { camera.fov });
-        let front = if args.towards.is_some() { self.centre.frame.y } else { camera.target - camera.eye };
+        let front = args.towards.map_or(camera.target - camera.eye, |t| t.0);
         let sized = resized(camera, false, [(args.size * 4).div_ceil(3), args.size]);
         let here = Camera {
             eye: self.centre.point,
             target: self.centre.point + front.normalize(),
-            up: self.centre.frame.z,
+            // Straight up or down, the top of the picture is where the observer's own is.
+            up: if front.normalize().cross(self.up.normalize()).length() > 1e-6 {
+                self.up
+            } else {
+                self.centre.frame.z
+            },
             fov,
             ..sized
         };
-        let [width, height] = here.size;
-        let size = args.from_cube.unwrap_or((2.0 * f64::from(height) / (0.5 * fov.to_radians()).tan()).ceil() as u32);
-        let seen = self.look(Shape { layout: Layout::Cube, size: size.clamp(1, 2048) });
-        let local = |x: f64, y: f64| Some(self.centre.frame.to_local(here.direction(x, y)));
-        let from_cube = exact_picture(&seen.map, here.size.map(|n| n as usize), local);
-        let direct = self.rays(&here);
-        let (d, t) = from_cube
-            .iter()
-            .zip(&direct)
-            .fold((0.0, 0.0), |(d, t), (a, b)| (d + f64::from(a - b).powi(2), t + f64::from(*b).powi(2)));
-        let off = if t > 0.0 { (d / t).sqrt() } else { 0.0 };
-        let (mut words, mut json) = self.said(&seen);
-        words.push(format!(
-            "a cube of {} turned this way is {:.3} % (rms) off a picture by rays{}",
-            seen.view.shape.size,
-            100.0 * off,
-            if args.from_cube.is_some() { ", and is what was drawn" } else { "; rays are what was drawn" }
-        ));
-        json["from_cube"] = json!({ "size": seen.view.shape.size, "off_rays": off, "drawn": args.from_cube.is_some() });
-        let mut values = if args.from_cube.is_some() { from_cube } else { direct };
-        if let Some(end) = args.turning_to {
-            let blur = turning::blurred(&seen.map, &here, end.0, |d| self.centre.frame.to_local(d))?;
-            words.push(turning::words(blur.off));
-            json["blur"] = json!({ "off_instants": blur.off });
-            values = blur.values;
+        let visibility = crate::render::Visibility::cast(&self.tracer, &here, args.samples);
+        let direct = self.rays(&here, &visibility);
+        let shown = PictureShares::of(&Mesh::of_patches(stage), [&visibility]).shares;
+        let side = u64::from(args.samples);
+        let rays = u64::from(here.size[0]) * u64::from(here.size[1]) * side * side;
+        let at = here.eye.to_array();
+        let mut words = vec![format!("from {}, {}, {}: {} rays", at[0], at[1], at[2], inputs::thousands(rays))];
+        let mut json = json!({ "at": at, "rays": rays, "fov": fov });
+        let mut values = direct;
+        if args.from_cube.is_some() || args.turning_to.is_some() {
+            let own = (2.0 * f64::from(here.size[1]) / (0.5 * fov.to_radians()).tan()).ceil() as u32;
+            let size = args.from_cube.unwrap_or(own.clamp(1, LARGEST_CUBE));
+            let map = self.look(Shape { layout: Layout::Cube, size }).map;
+            let local = |d: DVec3| self.centre.frame.to_local(d);
+            if let Some(end) = args.turning_to {
+                let blur = turning::blurred(&map, &here, end.0, local)?;
+                words.push(turning::words(blur.off));
+                json["blur"] = json!({ "from_cube": size, "off_instants": blur.off });
+                values = blur.values;
+            } else {
+                let from_cube =
+                    exact_picture(&map, here.size.map(|n| n as usize), |x, y| Some(local(here.direction(x, y))));
+                let (d, t) = from_cube
+                    .iter()
+                    .zip(&values)
+                    .fold((0.0, 0.0), |(d, t), (a, b)| (d + f64::from(a - b).powi(2), t + f64::from(*b).powi(2)));
+                let off = if t > 0.0 { (d / t).sqrt() } else { 0.0 };
+                words.push(format!("drawn from a cube of {size}: {:.3} % (rms) off what rays show", 100.0 * off));
+                json["from_cube"] = json!({ "size": size, "off_rays": off });
+                values = from_cube;
+            }
         }
-        let drawn =
-            self.drawn(stage, Kind::Flat([width, height], values), &seen.view, "Radiance, W/(m^2 sr) per band.");
-        Ok(Made { drawn, words, json })
+        let adapts_to = self.patches(stage, &shown);
+        let comments = "Radiance, W/(m^2 sr) per band, linear.".to_string();
+        let (kind, photometry) = (Kind::Flat(here.size, values), stage.photometry.clone());
+        Ok(Made {
+            drawn: Drawn { kind, photometry, adapts_to, comments, is_irradiance: false, more: Vec::new() },
+            words,
+            json,
+        })
     }
 
-    /// Radiances through a camera, `samples * samples` rays a pixel.
-    fn rays(&self, camera: &Camera) -> Vec<f32> {
+    /// Luminances of patches with their shares of what is seen.
+    fn patches(&self, stage: &Stage, shares: &[f64]) -> Vec<(f64, f64, bool)> {
+        let lamps = Receivers::patches(stage).lamps();
+        let patches = luminance(&stage.photometry, &self.radiosity).into_iter().zip(shares).zip(lamps);
+        patches.map(|((y, s), lamp)| (y, *s, lamp)).collect()
+    }
+
+    /// Radiances through a camera, each sample of a pixel alike.
+    fn rays(&self, camera: &Camera, visibility: &crate::render::Visibility) -> Vec<f32> {
         let side = self.args.samples;
-        let visibility = crate::render::Visibility::cast(&self.tracer, camera, side);
-        let sky = self.sky.as_ref().map(|s| sky::Behind::new(s, &self.centre));
+        let sky = self.sky.as_ref().map(|s| sky::Behind::new(s, self.up));
         let (bands, width) = (self.radiosity.bands, camera.size[0] as usize);
         let pixel = |p: usize| {
             let samples = visibility.samples(p);

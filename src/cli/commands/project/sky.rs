@@ -55,15 +55,15 @@ pub(super) fn read(file: &Path, layout: Option<GivenLayout>, bands: &[String]) -
     }))
 }
 
-/// A sky that stands still while the observer turns: up is the observer's, the front the scene's +y (-z where y is up).
+/// A sky that stands still while the observer turns: up is the scene's, the front its +y (-z where y is up).
 pub(super) struct Behind<'a> {
     map: &'a WorldMap,
     axes: Centre,
 }
 
 impl<'a> Behind<'a> {
-    pub(super) fn new(map: &'a WorldMap, centre: &Centre) -> Self {
-        let up = centre.frame.z;
+    pub(super) fn new(map: &'a WorldMap, up: DVec3) -> Self {
+        let up = up.normalize_or(DVec3::Z);
         let front = if up.dot(DVec3::Y).abs() > 0.99 { -DVec3::Z } else { DVec3::Y };
         Self { map, axes: Centre::new(DVec3::ZERO, front, up) }
     }
@@ -77,8 +77,8 @@ impl<'a> Behind<'a> {
 }
 
 /// A map with the sky in the open share of each texel, filtered to its size.
-pub(super) fn behind(map: &WorldMap, open: &[f32], sky: &WorldMap, centre: &Centre) -> WorldMap {
-    let (shape, behind) = (map.shape(), Behind::new(sky, centre));
+pub(super) fn behind(map: &WorldMap, open: &[f32], sky: &WorldMap, centre: &Centre, up: DVec3) -> WorldMap {
+    let (shape, behind) = (map.shape(), Behind::new(sky, up));
     let pyramid = Pyramid::new(sky.clone());
     WorldMap::filled(shape, map.bands(), |k, v| {
         v.copy_from_slice(map.texel(k));

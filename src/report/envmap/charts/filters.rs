@@ -37,11 +37,11 @@ fn of(record: &EnvmapRecord, layouts: &[&'static str], filter: &'static str, str
             Dot { more: vec![percent_cell(Some(f.worst))], ..dot }
         };
         let poles = |f: &FilterRow| {
-            let dot = exact_dot(f.width, f.near_poles, &format!("near the poles {}", place(f)));
-            Dot { more: vec![percent_cell(None)], ..dot }
+            let dot = exact_dot(f.width, f.near_poles?, &format!("near the poles {}", place(f)));
+            Some(Dot { more: vec![percent_cell(None)], ..dot })
         };
         all.push(line(layout, k, rows(layout).map(everywhere).collect()));
-        let near = line(&format!("{layout}, near the poles"), k, rows(layout).map(poles).collect());
+        let near = line(&format!("{layout}, near the poles"), k, rows(layout).filter_map(poles).collect());
         all.push(Series { dashed: true, ..near });
     }
     all.retain(|s| !s.dots.is_empty());
