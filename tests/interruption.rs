@@ -165,9 +165,9 @@ fn journal(folder: &Path) -> PathBuf {
 fn interrupted_politely_it_says_what_is_kept_and_goes_on() {
     let undisturbed = tempfile::tempdir().expect("a folder");
     let place = tempfile::tempdir().expect("a folder");
-    assert!(command(undisturbed.path(), "32768", "2").status().expect("it runs").success());
+    assert!(command(undisturbed.path(), "131072", "2").status().expect("it runs").success());
     for (name, code) in [("-INT", 130), ("-TERM", 143)] {
-        let child = command(place.path(), "32768", "1").spawn().expect("it runs");
+        let child = command(place.path(), "131072", "1").spawn().expect("it runs");
         wait_for_any(&[&journal(place.path())]);
         std::thread::sleep(Duration::from_millis(300));
         signal(&child, name);
@@ -179,7 +179,7 @@ fn interrupted_politely_it_says_what_is_kept_and_goes_on() {
         assert_eq!(names(place.path()), ["ref.part"]);
         assert_eq!(names(&place.path().join("ref.part")), ["journal", "lock"]);
     }
-    let output = command(place.path(), "32768", "2").output().expect("it runs");
+    let output = command(place.path(), "131072", "2").output().expect("it runs");
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && message.contains("going on from an interrupted run"), "{message}");
     assert!(files(&place.path().join("ref")) == files(&undisturbed.path().join("ref")));
