@@ -52,8 +52,8 @@ pub(super) fn reading(level: f64) -> Vec<(&'static str, String)> {
     ];
     let mut all: Vec<(&str, String)> = fixed.into_iter().map(|(what, text)| (what, text.into())).collect();
     let text = format!(
-        "At {}, from the spread of the replicates of the truth. A dash stands where nothing is known, as where \
-         no light arrives; it is not zero.",
+        "At {}, from the spread of the replicates of the truth and of groups of places, which stand for all \
+         others. A dash stands where nothing is known, as where no light arrives; it is not zero.",
         confidence(level)
     );
     all.push(("Intervals", text));
