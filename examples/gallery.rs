@@ -25,6 +25,7 @@ fn main() -> Done {
     gallery.tones()?;
     gallery.unfolded()?;
     gallery.environment()?;
+    gallery.town()?;
     if all {
         gallery.robot_room()?;
     }
@@ -63,6 +64,33 @@ impl Gallery {
         let joined = side_by_side(&panels);
         std::fs::write(self.work.join(to), png(joined.width, joined.height, &joined.rgba)?)?;
         self.keep(to, to)
+    }
+
+    /// A town in four clusters under three lights, and a room [NINT89 fig. 7]: scanned, composited, shaded, judged by rays.
+    fn town(&self) -> Done {
+        let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+        let town = self.work.join("town");
+        let status =
+            Command::new(cargo).args(["run", "--release", "--quiet", "--example", "town", "--"]).arg(&town).status()?;
+        if !status.success() {
+            return Err(format!("the town: {status}").into());
+        }
+        self.etalon("scan town/town.toml --each -o parts")?;
+        let parts = ["buildings", "roads", "trees", "cars"].map(|o| format!("parts/{o}.span")).join(" ");
+        self.etalon(&format!("composite {parts} -o town.span"))?;
+        for light in ["day", "overcast", "night"] {
+            self.etalon(&format!("shade town.span --lighting town/{light}.toml -o town-{light}.png"))?;
+            self.keep(&format!("town-{light}.png"), &format!("town-{light}.png"))?;
+        }
+        self.etalon("scan town/room.toml -o room.span")?;
+        self.etalon("shade room.span -o room.png")?;
+        self.keep("room.png", "lamp-and-window.png")?;
+        for scene in ["town", "room"] {
+            self.etalon(&format!("audit compositing town/{scene}.toml -o audit-{scene} -q"))?;
+            let panels = ["shaded", "rays", "off"].map(|p| format!("audit-{scene}/{p}.png"));
+            self.join(&panels.each_ref().map(String::as_str), &format!("{scene}-judged.png"))?;
+        }
+        Ok(())
     }
 
     fn cornell_box(&self) -> Done {

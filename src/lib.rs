@@ -38,6 +38,7 @@ pub mod api;
 pub mod audit;
 pub mod carry;
 pub mod cli;
+pub mod compositing;
 pub mod doctor;
 pub mod estimate;
 pub mod formfactor;

@@ -7,6 +7,7 @@ mod cures;
 mod effect;
 pub mod envmap;
 pub mod fingerprint;
+pub mod picture;
 mod rank;
 mod seen;
 mod split;

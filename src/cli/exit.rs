@@ -1,6 +1,8 @@
 //! Exit codes, and the one error that ends a command.
 
+use crate::compositing::{CompositeError, ScanError, ShadeError};
 use crate::io::FileError;
+use crate::io::SpanWriteError;
 use crate::io::atomic::WriteError;
 use crate::io::scene::SceneFileError;
 use crate::methods::MethodError;
@@ -11,6 +13,7 @@ use crate::report::ReportError;
 use crate::scene::SceneError;
 use crate::solver::SolverError;
 use crate::study::JudgeError;
+use crate::study::compositing::CompositingError;
 use crate::study::validate::CieError;
 use serde_json::{Value, json};
 
@@ -90,6 +93,16 @@ macro_rules! bad_input {
 }
 
 bad_input!(KernelError, SolverError, ReferenceError, MetricsError, MethodError, SceneError, JudgeError, ReportError);
+bad_input!(ScanError, CompositeError, ShadeError, CompositingError);
+
+impl From<SpanWriteError> for Failure {
+    fn from(e: SpanWriteError) -> Self {
+        match e {
+            SpanWriteError::Image(e) => e.into(),
+            SpanWriteError::Write(e) => e.into(),
+        }
+    }
+}
 
 impl From<CieError> for Failure {
     fn from(e: CieError) -> Self {

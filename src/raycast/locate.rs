@@ -157,6 +157,25 @@ pub struct ElementLocator {
     first: Vec<u32>,
 }
 
+/// Which patch a point of a facet lies in.
+pub struct PatchLocator {
+    facets: Vec<Locator>,
+}
+
+impl PatchLocator {
+    /// The facets of a stage.
+    pub fn new(stage: &Stage) -> Self {
+        Self { facets: locators(stage) }
+    }
+
+    /// Patch of a facet's front or back at a point of it; [`BACK`] on a back that radiates nothing.
+    pub fn patch(&self, facet: u32, front: bool, point: DVec3) -> u32 {
+        let locator = &self.facets[facet as usize];
+        let direction = if front { -locator.normal } else { locator.normal };
+        locator.patch(point - direction, direction)
+    }
+}
+
 /// A patch of more than one element.
 struct Division {
     normal: DVec3,

@@ -26,7 +26,7 @@ pub use coplanar::plane_groups;
 pub use embree::{EmbreeKernel, Packets};
 pub use find::{Candidate, EMBREE_VARIABLE, Refused, Search, embree_folder, find_embree, use_embree};
 pub use kernel::{KernelError, KernelInfo, KernelKind, RayBatch, RayKernel};
-pub use locate::{BACK, ESCAPED, ElementLocator};
+pub use locate::{BACK, ESCAPED, ElementLocator, PatchLocator};
 pub use select::{Kernels, open_kernel, open_kernels};
 pub use shaft::{Between, Shaft};
 pub use tracer::{Tally, TraceScratch, Tracer};

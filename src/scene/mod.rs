@@ -3,6 +3,7 @@
 //! A [`Scene`] is what the author wrote, all states at once; a [`Stage`] is what stands there in one
 //! state, divided into numbered patches. Everything downstream works on stages.
 
+mod appearance;
 mod build;
 mod contact;
 mod divide;
@@ -20,6 +21,9 @@ mod stage;
 mod states;
 mod without;
 
+pub use appearance::{
+    Appearance, Background, Clouds, Finish, Fog, IntensityCurve, Light, LightShape, Picture, SkyModel, Texture, Tree,
+};
 pub use contact::COINCIDENCE_TOLERANCE;
 pub use error::SceneError;
 pub use finding::{Consequence, Finding, FindingKind, Place, Severity};

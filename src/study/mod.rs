@@ -3,6 +3,7 @@
 pub mod audit;
 mod baseline;
 mod causes;
+pub mod compositing;
 mod contributions;
 pub mod converge;
 pub mod envmap;

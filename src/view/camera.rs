@@ -23,13 +23,18 @@ pub struct Camera {
 impl Camera {
     /// Direction (unit) through the picture point (x, y), in pixels from the upper left corner.
     pub fn direction(&self, x: f64, y: f64) -> DVec3 {
+        self.ray(x, y).normalize()
+    }
+
+    /// The same with length 1 along the viewing direction: depth times this leads from the eye to the point.
+    pub fn ray(&self, x: f64, y: f64) -> DVec3 {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(self.up).normalize();
         let down = forward.cross(right);
         let half = (0.5 * self.fov.to_radians()).tan();
         let [w, h] = self.size.map(f64::from);
         let (sx, sy) = ((2.0 * x - w) / h * half, (2.0 * y / h - 1.0) * half);
-        (forward + right * sx + down * sy).normalize()
+        forward + right * sx + down * sy
     }
 }
 

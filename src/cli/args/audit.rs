@@ -1,5 +1,6 @@
 //! `etalon audit`.
 
+use super::compositing::CompositingArgs;
 use super::judge::OnInconclusive;
 use super::project::EnvmapArgs;
 use super::rays::RayArgs;
@@ -15,6 +16,9 @@ pub enum AuditCommand {
     Hemicube(Box<AuditArgs>),
     /// How wrong the light of an environment map is on an object, where, why, and how far from its centre it can be used.
     Envmap(Box<EnvmapArgs>),
+    /// How far pictures made from sub-scanlines are from pictures by rays: edges, every light and its shadows, clusters
+    /// against the whole.
+    Compositing(Box<CompositingArgs>),
 }
 
 /// Where hemi-cubes stand.

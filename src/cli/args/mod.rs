@@ -3,6 +3,7 @@
 mod audit;
 mod baseline;
 mod brought;
+mod compositing;
 mod converge;
 mod convert;
 mod form_factors;
@@ -21,6 +22,7 @@ mod viewing;
 pub use audit::{AuditArgs, AuditCommand, AuditForm};
 pub use baseline::{BaselineChangeArgs, BaselineCommand, BaselineSaveArgs, BisectArgs};
 pub use brought::{BroughtArgs, Up};
+pub use compositing::{CompositeArgs, CompositingArgs, ScanArgs, ShadeArgs};
 pub use converge::{ConvergeArgs, ConvergeCommand, ConvergeDiffArgs, ConvergeOther};
 pub use convert::ConvertArgs;
 pub use form_factors::{
@@ -37,7 +39,7 @@ pub use scene::{SceneArgs, SceneCommand};
 pub use setup::SetupCommand;
 pub use solve::SolveArgs;
 pub use suites::{DisplaySuiteArgs, ReceiversArgs, ValidateCommand};
-pub use viewing::{LookingArgs, ToneChoice};
+pub use viewing::{LookingArgs, ToneChoice, ViewingArgs};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -125,6 +127,13 @@ pub enum Command {
     /// The whole world as it is seen from one point: cube, latitude-longitude, fish-eye, perspective; one layout from
     /// another.
     Project(Box<ProjectArgs>),
+    /// What a camera sees, by visible segments with depth on sub-scanlines, in a file: pictures of any scale and light are
+    /// made of it without asking again what is visible.
+    Scan(Box<ScanArgs>),
+    /// Span files of one view in one: depth decides, faces may go through each other.
+    Composite(Box<CompositeArgs>),
+    /// A picture from a span file, at any scale, under any lights: shadows, fog, textures, mirrors.
+    Shade(Box<ShadeArgs>),
     /// Write the HTML report of a finished run again.
     Report {
         /// Directory that `check --report`, `compare --report` or `demo` wrote.

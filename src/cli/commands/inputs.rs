@@ -7,9 +7,9 @@ use crate::cli::values::StateChoice;
 use crate::doctor;
 use crate::estimate::{Estimator, Plan};
 use crate::io::atomic;
-use crate::io::scene::{SceneOptions, open_scene};
+use crate::io::scene::{Look, SceneOptions, Shapes, open_scene, open_with_look, read_lighting};
 use crate::raycast::KernelKind;
-use crate::scene::{Finding, FindingKind, Scene, Severity, Stage};
+use crate::scene::{Appearance, Finding, FindingKind, Scene, Severity, Stage};
 use crate::study::Session;
 use std::path::Path;
 
@@ -42,6 +42,24 @@ pub fn open(spec: &str, max_edge: Option<f64>) -> Result<Scene, Failure> {
         return Err(Failure::input("--max-edge must be a length above 0, in metres"));
     }
     Ok(open_scene(spec, &SceneOptions { max_edge_override: max_edge })?)
+}
+
+/// Reads a scene with what only pictures show, telling its notices.
+pub fn scene_with_look(spec: &str, max_edge: Option<f64>, console: &Console) -> Result<(Scene, Look), Failure> {
+    if max_edge.is_some_and(|e| !(e > 0.0 && e.is_finite())) {
+        return Err(Failure::input("--max-edge must be a length above 0, in metres"));
+    }
+    let (scene, look) = open_with_look(spec, &SceneOptions { max_edge_override: max_edge })?;
+    scene.notices.iter().for_each(|n| console.notice(n));
+    Ok((scene, look))
+}
+
+/// An appearance with the words of a lighting file over it, if there is one.
+pub fn lighting(file: Option<&Path>, base: Appearance, shapes: &dyn Shapes) -> Result<Appearance, Failure> {
+    match file {
+        Some(file) => Ok(read_lighting(file, shapes.bands())?.over(&base, shapes)?),
+        None => Ok(base),
+    }
 }
 
 /// What the scene doctor finds; says on stderr how many findings are grave.

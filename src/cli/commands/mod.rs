@@ -1,6 +1,7 @@
 //! One file per command: plan, run, print.
 
 mod audit;
+mod audit_compositing;
 mod audit_envmap;
 mod audit_envmap_pictures;
 mod audit_tables;
@@ -10,6 +11,7 @@ mod bisect;
 mod brought;
 mod check;
 mod check_residual;
+mod composite;
 mod converge;
 mod converge_diff;
 mod converge_references;
@@ -17,6 +19,7 @@ mod converge_refine;
 mod converge_told;
 mod convert;
 mod demo;
+mod drawn;
 mod form_factors;
 mod form_factors_check;
 mod form_factors_compare;
@@ -34,9 +37,12 @@ mod receivers;
 mod reference;
 mod render;
 mod report;
+mod scan;
 mod scene;
+mod shade;
 mod solve;
 mod solve_by_shots;
+mod spans;
 mod split;
 mod standpoint;
 mod told;
@@ -72,7 +78,11 @@ pub fn run(cli: &Cli, console: &Console) -> Result<u8, Failure> {
         Command::Converge(ConvergeCommand::Other(ConvergeOther::Diff(args))) => converge_diff::run(args, console),
         Command::Audit(AuditCommand::Hemicube(args)) => audit::run(args, kernel, console),
         Command::Audit(AuditCommand::Envmap(args)) => audit_envmap::run(args, kernel, console),
+        Command::Audit(AuditCommand::Compositing(args)) => audit_compositing::run(args, kernel, console),
         Command::Project(args) => project::run(args, kernel, console),
+        Command::Scan(args) => scan::run(args, kernel, console),
+        Command::Composite(args) => composite::run(args, console),
+        Command::Shade(args) => shade::run(args, console),
         Command::Render(args) => render::run(args, kernel, console),
         Command::Report { directory } => report::run(directory, cli.global.kernel, console),
         Command::Demo { output } => demo::run(output, cli.global.kernel, console),

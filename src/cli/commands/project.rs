@@ -1,12 +1,11 @@
 //! `etalon project`: the world from a point, laid out; one layout from another; Omnimax pictures [G86 fig. 11].
 
-mod drawn;
 mod from_picture;
 mod from_scene;
 mod sky;
 mod turning;
 
-use super::inputs;
+use super::{drawn, inputs};
 use crate::cli::args::{LayoutChoice, ProjectArgs, ToneChoice};
 use crate::cli::console::Console;
 use crate::cli::exit::{self, Failure};
@@ -48,7 +47,8 @@ pub fn run(args: &ProjectArgs, kernel: KernelKind, console: &Console) -> Result<
         true => from_picture::made(args, source)?,
         false => from_scene::made(args, kernel, console)?,
     };
-    let (bytes, more) = if as_picture { made.drawn.png(args)? } else { (made.drawn.exr()?, Vec::new()) };
+    let (bytes, more) =
+        if as_picture { made.drawn.png(args.tone, &args.viewing)? } else { (made.drawn.exr()?, Vec::new()) };
     inputs::write(&args.output, &bytes)?;
     let [width, height] = made.drawn.size();
     let mut json = made.json;

@@ -4,14 +4,24 @@ use crate::cli::exit::Failure;
 use crate::math::DVec3;
 use crate::raycast::Tracer;
 use crate::render::{Centre, fit_camera};
+use crate::scene::Stage;
 use crate::view::Camera;
 
 /// The camera of this name, or the first; one is fitted where the scene has none.
 pub fn camera(tracer: &Tracer, name: Option<&str>) -> Result<Camera, Failure> {
-    let own = &tracer.stage().cameras;
-    let Some(name) = name else {
-        return Ok(own.first().cloned().unwrap_or_else(|| fit_camera(tracer)));
-    };
+    match (name, tracer.stage().cameras.is_empty()) {
+        (None, true) => Ok(fit_camera(tracer)),
+        _ => own_camera(tracer.stage(), name),
+    }
+}
+
+/// The same of the scene's own cameras alone.
+pub fn own_camera(stage: &Stage, name: Option<&str>) -> Result<Camera, Failure> {
+    let own = &stage.cameras;
+    if let (None, Some(first)) = (name, own.first()) {
+        return Ok(first.clone());
+    }
+    let name = name.unwrap_or_default();
     let names = || own.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
     own.iter().find(|c| c.name == name).cloned().ok_or_else(|| {
         Failure::input(match own.is_empty() {

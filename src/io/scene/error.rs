@@ -18,7 +18,7 @@ pub enum Refusal {
     Format,
     /// A key that does not exist here, is missing, or excludes another.
     Key,
-    /// Kept for a later version.
+    /// Kept for a later version, or for pictures alone.
     Reserved,
     /// A name that is taken, empty or unknown.
     Name,

@@ -2,20 +2,33 @@
 
 use super::check::{Check, Checked, known_names};
 use super::error::Refusal;
-use super::photometry::{per_band, reserved};
-use super::raw;
+use super::lamp_keys::{kind, name};
+use super::photometry::per_band;
+use super::{raw, raw_look};
 use crate::math::DVec3;
 use crate::scene::{Distribution, PointLight, Receiver};
 use std::ops::Range;
 use toml::Spanned;
 
-/// Kinds of light that a later version brings.
-const LATER: [&str; 3] = ["parallel", "linear", "sky"];
-
-/// Reads all lights. Those without a name are called `light 1`, `light 2`, ...
-pub(super) fn lights(check: Check, tables: &[raw::Light], bands: &[String]) -> Checked<Vec<PointLight>> {
+/// Reads the lights of a scene for radiosity, which knows those without extent alone. Those without a name are called
+/// `light 1`, `light 2`, ...
+pub(super) fn lights(check: Check, tables: &[raw_look::Light], bands: &[String]) -> Checked<Vec<PointLight>> {
     let mut lights: Vec<PointLight> = Vec::new();
     for (k, table) in tables.iter().enumerate() {
+        kind(check, table)?;
+        let beyond = match &table.curve {
+            None => (table.kind.get_ref() != "point")
+                .then(|| (table.kind.span(), format!("of type \"{}\"", table.kind.get_ref()))),
+            Some(curve) => Some((curve.span(), "with a curve".to_string())),
+        };
+        if let Some((span, what)) = beyond {
+            return check.refuse(
+                Refusal::Reserved,
+                span,
+                format!("a light {what} is for pictures: radiosity knows point lights alone"),
+                "put it into a lighting file for `etalon shade --lighting FILE`; here lamps are surfaces with emission",
+            );
+        }
         let light = light(check, table, bands, k + 1)?;
         if lights.iter().any(|l| l.name == light.name) {
             let span = table.name.as_ref().map_or_else(|| table.kind.span(), Spanned::span);
@@ -26,19 +39,11 @@ pub(super) fn lights(check: Check, tables: &[raw::Light], bands: &[String]) -> C
     Ok(lights)
 }
 
-fn second<T>(check: Check, span: Range<usize>, what: &str, name: &str) -> Checked<T> {
+pub(super) fn second<T>(check: Check, span: Range<usize>, what: &str, name: &str) -> Checked<T> {
     check.refuse(Refusal::Name, span, format!("a second {what} \"{name}\""), format!("give every {what} its own name"))
 }
 
-fn light(check: Check, table: &raw::Light, bands: &[String], number: usize) -> Checked<PointLight> {
-    let kind = table.kind.get_ref().as_str();
-    if LATER.contains(&kind) {
-        reserved(check, &format!("a light of type \"{kind}\""), Some(table.kind.span()))?;
-    }
-    if kind != "point" {
-        let message = format!("there is no type of light \"{}\"", kind.escape_debug());
-        return check.refuse(Refusal::Key, table.kind.span(), message, known_names(kind, ["point"]));
-    }
+fn light(check: Check, table: &raw_look::Light, bands: &[String], number: usize) -> Checked<PointLight> {
     let missing = |key: &str| format!("a point light has no {key}");
     let Some(position) = &table.position else {
         return check.refuse(Refusal::Key, table.kind.span(), missing("position"), "add position = [x, y, z]");
@@ -47,7 +52,7 @@ fn light(check: Check, table: &raw::Light, bands: &[String], number: usize) -> C
         return check.refuse(Refusal::Key, table.kind.span(), missing("intensity"), "add intensity = ... in W/sr");
     };
     Ok(PointLight {
-        name: table.name.as_ref().map_or(Ok(format!("light {number}")), |n| check.name("light name", n))?,
+        name: name(check, table, number)?,
         position: check.point("position", position)?,
         intensity: self::intensity(check, intensity, bands)?,
         distribution: distribution(check, table)?,
@@ -67,7 +72,7 @@ fn intensity(check: Check, value: &Spanned<raw::Numbers>, bands: &[String]) -> C
     }
 }
 
-fn distribution(check: Check, table: &raw::Light) -> Checked<Distribution> {
+pub(super) fn distribution(check: Check, table: &raw_look::Light) -> Checked<Distribution> {
     let name = table.distribution.as_ref().map_or("isotropic", |d| d.get_ref().as_str());
     let span = || table.distribution.as_ref().unwrap_or(&table.kind).span();
     match (name, &table.direction) {
@@ -110,7 +115,7 @@ pub(super) fn receivers(check: Check, tables: &[raw::Receiver]) -> Checked<Vec<R
 }
 
 /// A direction of length 1.
-fn unit(check: Check, what: &str, value: &Spanned<Vec<f64>>) -> Checked<DVec3> {
+pub(super) fn unit(check: Check, what: &str, value: &Spanned<Vec<f64>>) -> Checked<DVec3> {
     let v = check.direction(what, value)?;
     let u = (v / v.abs().max_element()).normalize_or_zero();
     match u.is_finite() && u != DVec3::ZERO {

@@ -212,7 +212,6 @@ pub(super) fn materials(
     let mut materials = Materials::default();
     for table in tables {
         reserved(check, "material.specular", table.specular.as_ref().map(Spanned::span))?;
-        reserved(check, "material.texture", table.texture.as_ref().map(Spanned::span))?;
         let name = check.name("material name", &table.name)?;
         if table.reflectance.is_none() && table.emission.is_none() {
             return check.refuse(
@@ -251,7 +250,7 @@ pub(super) fn reserved(check: Check, what: &str, span: Option<Range<usize>>) -> 
             Refusal::Reserved,
             span,
             format!("{what} is reserved: a later version brings it"),
-            "leave it out for now; surfaces are diffuse and lit by emitting surfaces and point lights",
+            "leave it out for now; surfaces are diffuse, and what pictures show beyond that are textures, shares and lights",
         ),
     }
 }

@@ -1,5 +1,6 @@
 //! The scene file as TOML: every key that exists, with the place of what must be checked.
 
+use super::raw_look;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 use std::fmt;
@@ -32,7 +33,11 @@ pub(super) struct File {
     #[serde(default)]
     pub receiver: Vec<Receiver>,
     #[serde(default)]
-    pub light: Vec<Light>,
+    pub light: Vec<raw_look::Light>,
+    pub fog: Option<raw_look::Fog>,
+    pub background: Option<raw_look::Background>,
+    #[serde(default)]
+    pub tree: Vec<raw_look::Tree>,
     pub texture: Option<Spanned<IgnoredAny>>,
 }
 
@@ -57,7 +62,11 @@ pub(super) struct Material {
     pub reflectance: Option<Spanned<Numbers>>,
     pub emission: Option<Spanned<Numbers>>,
     pub specular: Option<Spanned<IgnoredAny>>,
-    pub texture: Option<Spanned<IgnoredAny>>,
+    pub texture: Option<raw_look::Texture>,
+    pub bump: Option<raw_look::Bump>,
+    pub reflection: Option<Spanned<raw_look::Share>>,
+    pub transparency: Option<Spanned<raw_look::Share>>,
+    pub refraction: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -92,18 +101,6 @@ pub(super) struct Camera {
     pub up: Option<Spanned<Vec<f64>>>,
     pub fov: Option<Spanned<f64>>,
     pub size: Option<Spanned<Vec<i64>>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Light {
-    pub name: Option<Spanned<String>>,
-    #[serde(rename = "type")]
-    pub kind: Spanned<String>,
-    pub position: Option<Spanned<Vec<f64>>>,
-    pub intensity: Option<Spanned<Numbers>>,
-    pub distribution: Option<Spanned<String>>,
-    pub direction: Option<Spanned<Vec<f64>>>,
 }
 
 #[derive(Deserialize)]

@@ -2,11 +2,14 @@
 
 use super::SceneOptions;
 use super::cameras::cameras;
-use super::check::{Check, Checked, known_names, nearest};
+use super::check::{Check, Checked, known_names};
 use super::edits::{self, Read};
 use super::error::{Refusal, SceneFileError};
+use super::finishes::Keys;
 use super::folder::{Folder, text_of};
+use super::format::{check_format, syntax};
 use super::lighting::{lights, receivers};
+use super::look::Look;
 use super::mesh::Gathered;
 use super::photometry::{materials, photometry, reserved};
 use super::raw;
@@ -40,17 +43,57 @@ pub(super) fn parse_text(name: &str, text: &str, options: &SceneOptions) -> Resu
     parse(&source, name, &Folder::none(), options)
 }
 
+/// The scene as radiosity knows it; what only pictures show is left out, with a notice.
 fn parse(source: &Source, stem: &str, folder: &Folder, options: &SceneOptions) -> Checked<Scene> {
     let check = Check { source };
-    check_format(check)?;
-    let file: raw::File = toml::from_str(&source.text).map_err(|e| syntax(source, &e))?;
+    let file = file(check)?;
+    let mut scene = gather(check, &file, stem, folder, max_edge(check, &file, options)?)?;
+    scene.lights = lights(check, &file.light, &scene.photometry.bands)?;
+    scene.notices.extend(left_out(&file));
+    settle(check, &file, scene)
+}
+
+/// The scene with what pictures show; it has the point lights that radiosity knows.
+pub(super) fn parse_with_look(
+    source: &Source,
+    stem: &str,
+    folder: &Folder,
+    options: &SceneOptions,
+) -> Checked<(Scene, Look)> {
+    let check = Check { source };
+    let file = file(check)?;
+    let mut scene = gather(check, &file, stem, folder, max_edge(check, &file, options)?)?;
+    let look = Look::of_scene(check, &file, folder, &scene.photometry.bands)?;
+    scene.lights = look.point_lights();
+    Ok((settle(check, &file, scene)?, look))
+}
+
+/// The tables of the file.
+fn file(check: Check) -> Checked<raw::File> {
+    check_format(check, SCENE_FORMAT)?;
+    let file: raw::File = toml::from_str(&check.source.text).map_err(|e| syntax(check.source, &e))?;
     reserved(check, "texture", file.texture.as_ref().map(Spanned::span))?;
     if file.surface.is_empty() {
-        let whole = 0..source.text.len().min(1);
+        let whole = 0..check.source.text.len().min(1);
         return check.refuse(Refusal::Empty, whole, "the scene has no surface", "add a [[surface]]");
     }
-    let scene = gather(check, &file, stem, folder, max_edge(check, &file, options)?)?;
-    settle(check, &file, scene)
+    Ok(file)
+}
+
+/// What radiosity passes over.
+fn left_out(file: &raw::File) -> Option<String> {
+    let finishes = file.material.iter().filter(|m| !Keys::of_material(m).are_none()).count();
+    let counted = |n: usize, what: &str| (n > 0).then(|| format!("{n} {what}{}", if n == 1 { "" } else { "s" }));
+    let parts = [
+        counted(finishes, "material finish").map(|t| t.replace("finishs", "finishes")),
+        counted(file.tree.len(), "tree"),
+        file.fog.as_ref().map(|_| "fog".to_string()),
+        file.background.as_ref().map(|_| "the background".to_string()),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| {
+        format!("left out, since only pictures show them: {} (radiosity knows the material alone)", parts.join(", "))
+    })
 }
 
 /// Puts the scene together, not yet looking at how its parts fit.
@@ -68,7 +111,7 @@ fn gather(check: Check, file: &raw::File, stem: &str, folder: &Folder, max_edge:
         absent: absent(check, file)?,
         edits,
         cameras: cameras(check, &file.camera)?,
-        lights: lights(check, &file.light, &photometry.bands)?,
+        lights: Vec::new(),
         receivers: receivers(check, &file.receiver)?,
         materials: materials.list,
         photometry,
@@ -81,50 +124,6 @@ fn gather(check: Check, file: &raw::File, stem: &str, folder: &Folder, max_edge:
 fn is_rgb(photometry: &Photometry) -> bool {
     let w = &photometry.weights;
     w.len() == 3 && w != Primaries::Xyz.weights() && w != Primaries::Rec2020.weights()
-}
-
-/// The format line first: whatever else is unknown in a newer file is no mistake of its author.
-fn check_format(check: Check) -> Checked<()> {
-    let read: raw::FormatLine = toml::from_str(&check.source.text).map_err(|e| syntax(check.source, &e))?;
-    let write_it = format!("write format = \"{SCENE_FORMAT}\" in the first line");
-    let Some(format) = read.format else {
-        let first = 0..check.source.text.lines().next().map_or(0, str::len);
-        return check.refuse(Refusal::Format, first, "the format line is missing", write_it);
-    };
-    let found = format.get_ref();
-    if found == SCENE_FORMAT {
-        return Ok(());
-    }
-    let newer = found.strip_prefix("etalon-scene/").and_then(|v| v.parse::<u32>().ok()).is_some_and(|v| v > 1);
-    let shown = found.escape_debug();
-    match newer {
-        true => check.refuse(
-            Refusal::Format,
-            format.span(),
-            format!("the format \"{shown}\" is newer than this program, which reads {SCENE_FORMAT}"),
-            "update etalon",
-        ),
-        false => check.refuse(Refusal::Format, format.span(), format!("unknown format \"{shown}\""), write_it),
-    }
-}
-
-/// A message of the TOML reader, with the nearest key where one is unknown.
-fn syntax(source: &Source, e: &toml::de::Error) -> SceneFileError {
-    let span = e.span().unwrap_or(0..0);
-    let message = e.message().trim().replace('\n', ", ");
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let (refusal, mend) = match quoted.as_slice() {
-        [unknown, known @ ..] if message.starts_with("unknown field") => {
-            let mend = match nearest(unknown, known.iter().copied()) {
-                Some(near) => format!("did you mean \"{near}\"?"),
-                None => "leave it out; references/scene-format.md lists all keys".into(),
-            };
-            (Refusal::Key, mend)
-        }
-        [key, ..] if message.starts_with("missing field") => (Refusal::Key, format!("add {key} = ...")),
-        _ => (Refusal::Syntax, "correct the line".into()),
-    };
-    SceneFileError::new(source, refusal, span, message).mend(mend)
 }
 
 /// The command line's largest edge, else the file's.

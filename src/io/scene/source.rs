@@ -12,13 +12,15 @@ pub(super) struct Source {
 }
 
 /// Headers of the blocks that have a name, with the word for them.
-const BLOCKS: [(&str, &str); 6] = [
+const BLOCKS: [(&str, &str); 8] = [
     ("[[surface]]", "surface"),
     ("[[material]]", "material"),
     ("[[camera]]", "camera"),
     ("[[light]]", "light"),
     ("[[receiver]]", "receiver"),
     ("[[edit]]", "edit"),
+    ("[[tree]]", "tree"),
+    ("[[finish]]", "finish"),
 ];
 
 impl Source {

@@ -11,30 +11,20 @@ mod testing;
 mod tests;
 mod words;
 
+pub use super::gallery::PagePicture as EnvmapPicture;
+
+use super::gallery::encoded;
 use super::{Artifact, Phase, ReportError};
-use crate::io::image::png;
-use crate::render::Raster;
 use crate::study::envmap::EnvmapRecord;
 
 /// Name of the page in its folder.
 pub const ENVMAP_PAGE: &str = "index.html";
 
-/// A picture ready to be shown.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EnvmapPicture {
-    /// Stem of its file; where it stands in the page follows from it: `world-*`, `footprints-*`,
-    /// `sphere-{diffuse,half,mirror}-{map,rays,off}`, `object-{map,hybrid,rays,off}`, anything else at the end.
-    pub name: String,
-    /// What it shows.
-    pub title: String,
-    /// The pixels.
-    pub raster: Raster,
-}
-
 /// What a page shows beside the record.
 #[derive(Debug, Clone, Copy)]
 pub struct EnvmapExtras<'a> {
-    /// Pictures, in order within each group.
+    /// Pictures, in order within each group. Where one stands follows from its name: `world-*`, `footprints-*`,
+    /// `sphere-{diffuse,half,mirror}-{map,rays,off}`, `object-{map,hybrid,rays,off}`, anything else at the end.
     pub pictures: &'a [EnvmapPicture],
     /// Wall-clock times.
     pub timing: &'a [Phase],
@@ -46,11 +36,7 @@ pub struct EnvmapExtras<'a> {
 /// # Errors
 /// [`ReportError::Image`] for a picture whose pixels do not fit its size; [`ReportError::Page`], which no data provokes.
 pub fn envmap_files(record: &EnvmapRecord, extras: &EnvmapExtras) -> Result<Vec<Artifact>, ReportError> {
-    let encode = |p: &EnvmapPicture| -> Result<Artifact, ReportError> {
-        let r = &p.raster;
-        Ok(Artifact::new(pictures::file(p), png(r.width, r.height, &r.rgba)?))
-    };
-    let pictures = extras.pictures.iter().map(encode).collect::<Result<Vec<_>, _>>()?;
+    let pictures = encoded(extras.pictures)?;
     let page = page::Page::new(record, extras);
     let mut files = vec![Artifact::new(ENVMAP_PAGE, page::render(&page, &pictures)?)];
     files.extend(page.chart_files());

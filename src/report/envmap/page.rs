@@ -4,11 +4,12 @@ use super::EnvmapExtras;
 use super::charts::{Section, reach, sections};
 use super::clock::{FilterLine, SpeedLine, filters, speed};
 use super::parts::{PartRow, bias, rows};
-use super::pictures::{Group, groups};
+use super::pictures::groups;
 use super::words::reading;
-use crate::metrics::Verdict;
 use crate::report::chart::{self, Library};
-use crate::report::format::{confidence, count, percent_exact, round_number, significant, with_error};
+use crate::report::format::{confidence, count, percent_exact, round_number, with_error};
+use crate::report::frame::{self, program, sentence, timing};
+use crate::report::gallery::Group;
 use crate::report::headline::verdict_word;
 use crate::report::html::context::{class, minus};
 use crate::report::number::{UNKNOWN, number};
@@ -18,17 +19,11 @@ use crate::study::envmap::EnvmapRecord;
 use minijinja::context;
 use serde::Serialize;
 
-/// The page and what it is put together from; style and colours of the other audit's page.
-const TEMPLATES: [(&str, &str); 9] = [
+/// What the page adds to the frame of audits.
+const TEMPLATES: [(&str, &str); 3] = [
     ("envmap.html", include_str!("page/envmap.html.j2")),
     ("sections.html", include_str!("page/sections.html.j2")),
-    ("pictures.html", include_str!("page/pictures.html.j2")),
     ("envmap.css", include_str!("page/envmap.css")),
-    ("audit.css", include_str!("../audit/page/audit.css")),
-    ("style.css", include_str!("../html/page/style.css")),
-    ("macros.html", include_str!("../html/page/macros.html.j2")),
-    chart::TEMPLATE,
-    chart::STYLE,
 ];
 
 #[derive(Debug, Serialize)]
@@ -61,7 +56,7 @@ impl<'a> Page<'a> {
             subtitle: format!("An environment map of \u{201c}{}\u{201d}, audited", record.object),
             class: class(record.verdict),
             word,
-            sentence: sentence(record),
+            sentence: sentence(&record.findings, record.verdict, record.limit),
             facts: facts(record),
             findings: record.findings.iter().skip(1).map(|f| minus(f)).collect(),
             parts: rows(&record.irradiance),
@@ -71,12 +66,8 @@ impl<'a> Page<'a> {
             read: reading(record.confidence),
             settings: settings(record),
             speed: speed(record),
-            timing: extras
-                .timing
-                .iter()
-                .map(|p| (p.name.as_str(), format!("{} s", significant(p.seconds, 3))))
-                .collect(),
-            program: format!("etalon {}", env!("CARGO_PKG_VERSION")),
+            timing: timing(extras.timing),
+            program: program(),
         }
     }
 
@@ -88,19 +79,6 @@ impl<'a> Page<'a> {
     pub(super) fn chart_files(&self) -> Vec<Artifact> {
         chart::files(self.all_charts())
     }
-}
-
-/// What was found first, and what becomes of the limit.
-fn sentence(record: &EnvmapRecord) -> String {
-    let limit = match (record.verdict, record.limit.map(percent_exact)) {
-        (Some(Verdict::Pass), Some(l)) => format!(" That is within the limit of {l}."),
-        (Some(Verdict::Fail), Some(l)) => format!(" That is beyond the limit of {l}."),
-        (Some(Verdict::Inconclusive), Some(l)) => {
-            format!(" Whether that is within the limit of {l} cannot be told from this truth.")
-        }
-        _ => String::new(),
-    };
-    minus(&format!("{}{limit}", record.findings.first().map_or("", String::as_str)))
 }
 
 /// A place, metres.
@@ -156,5 +134,6 @@ fn settings(record: &EnvmapRecord) -> Vec<(&'static str, String)> {
 pub(super) fn render(page: &Page, pictures: &[Artifact]) -> Result<String, ReportError> {
     let uris = inlined(pictures);
     let library = Library::for_charts(page.all_charts().next().is_some());
-    filled(TEMPLATES, "envmap.html", context! { page, uris, library })
+    let templates = frame::TEMPLATES.into_iter().chain(TEMPLATES);
+    filled(templates, "envmap.html", context! { page, uris, library, styles => ["envmap.css"] })
 }

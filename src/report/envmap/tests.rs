@@ -1,9 +1,10 @@
 //! The page of a record made by hand.
 
 use super::charts::reach;
-use super::pictures::{file, groups};
+use super::pictures::groups;
 use super::testing::{record, unknown};
 use super::*;
+use crate::render::Raster;
 use crate::report::chart::testing::without_library;
 use crate::report::testing::{assert_well_formed, outside, shown};
 use crate::study::envmap::PointRow;
@@ -324,7 +325,7 @@ fn pictures_stand_in_their_groups_each_once() {
     let titles = found.iter().flatten().flatten().map(|n| format!("alt=\"{}", shown(&format!("the <i>{n}</i>"))));
     assert_eq!(images, titles.collect::<Vec<_>>());
     for p in &all {
-        assert!(files.iter().any(|f| f.name == file(p) && f.bytes.starts_with(b"\x89PNG")), "{}", p.name);
+        assert!(files.iter().any(|f| f.name == p.file() && f.bytes.starts_with(b"\x89PNG")), "{}", p.name);
     }
 }
 

@@ -104,6 +104,6 @@ pub(super) fn several(record: &EnvmapRecord) -> Option<Chart> {
         .into();
     let x = axis("centres", "centres", Unit::Count);
     let mut chart = parts(["centres", "Error against the number of centres"], caption, x, &record.several, &place)?;
-    chart.rules = limit(record);
+    chart.rules = limit(record.limit);
     Some(chart)
 }

@@ -55,7 +55,7 @@ pub(super) fn hybrid(record: &EnvmapRecord) -> Option<Chart> {
     let x = axis("reach of the rays, m", "reach", Unit::Plain);
     let title = "Error of the hybrid against its reach";
     let mut chart = chart("hybrid", title, caption.into(), [x, errors()], all)?;
-    chart.rules = limit(record);
+    chart.rules = limit(record.limit);
     Some(chart)
 }
 

@@ -1,6 +1,6 @@
 //! What is written: a map in a layout, or a flat picture; as numbers or as an eye would see it.
 
-use crate::cli::args::{ProjectArgs, ToneChoice};
+use crate::cli::args::{ToneChoice, ViewingArgs};
 use crate::cli::exit::Failure;
 use crate::io::image::{Channel, ImageError, Samples, channel_names, exr, png};
 use crate::io::world_map::world_map_exr;
@@ -10,7 +10,7 @@ use crate::world::{WorldMap, unfolded};
 use std::f64::consts::PI;
 
 /// Radiances, or irradiances, in a layout.
-pub(super) struct Drawn {
+pub struct Drawn {
     pub kind: Kind,
     pub photometry: Photometry,
     /// Luminances (weighted by band, of B) that the eye adapts to, each with its share of what is seen and whether it is
@@ -25,7 +25,7 @@ pub(super) struct Drawn {
 }
 
 /// The form of it.
-pub(super) enum Kind {
+pub enum Kind {
     /// A layout.
     Map(WorldMap),
     /// A plane picture: width, height, bands side by side.
@@ -34,7 +34,7 @@ pub(super) enum Kind {
 
 impl Drawn {
     /// Irradiances are shown as a white matt surface is seen under them, of radiance E / pi; numbers stay as they are.
-    pub(super) fn shown_as_white_matt(&mut self) {
+    pub fn shown_as_white_matt(&mut self) {
         self.is_irradiance = true;
         if let Some(map) = self.as_radiance() {
             self.adapts_to = texels(&map, &self.photometry);
@@ -50,7 +50,7 @@ impl Drawn {
     }
 
     /// Pixels across and down.
-    pub(super) fn size(&self) -> [u32; 2] {
+    pub fn size(&self) -> [u32; 2] {
         match &self.kind {
             Kind::Map(map) => {
                 let sheet = unfolded(map.shape());
@@ -61,7 +61,7 @@ impl Drawn {
     }
 
     /// Numbers.
-    pub(super) fn exr(&self) -> Result<Vec<u8>, Failure> {
+    pub fn exr(&self) -> Result<Vec<u8>, Failure> {
         let bug = |e: ImageError| Failure::input(e.to_string());
         let bands = &self.photometry.bands;
         match &self.kind {
@@ -79,15 +79,15 @@ impl Drawn {
     }
 
     /// A picture, with what its colours mean.
-    pub(super) fn png(&self, args: &ProjectArgs) -> Result<(Vec<u8>, Vec<String>), Failure> {
-        let operator = match args.tone {
+    pub fn png(&self, tone: ToneChoice, viewing: &ViewingArgs) -> Result<(Vec<u8>, Vec<String>), Failure> {
+        let operator = match tone {
             ToneChoice::Operator(operator) => operator,
             ToneChoice::Linear => Operator::default(),
         };
         let seen = Seen { shares: self.adapts_to.iter().map(|a| a.1).collect() };
         let luminances: Vec<f64> = self.adapts_to.iter().map(|a| a.0).collect();
         let lamps: Vec<bool> = self.adapts_to.iter().map(|a| a.2).collect();
-        let viewer = args.viewing.onlooker(operator).look(&seen, &luminances, &lamps);
+        let viewer = viewing.onlooker(operator).look(&seen, &luminances, &lamps);
         let shade = ToneMap::new(viewer, &self.photometry);
         let clipped = shade.clipped(self.adapts_to.iter().map(|a| (a.0, a.1)));
         let raster: Raster = match (&self.kind, self.as_radiance()) {
@@ -101,7 +101,7 @@ impl Drawn {
 }
 
 /// Every texel of a map with its share of the world; none is known to be a lamp.
-pub(super) fn texels(map: &WorldMap, photometry: &Photometry) -> Vec<(f64, f64, bool)> {
+pub fn texels(map: &WorldMap, photometry: &Photometry) -> Vec<(f64, f64, bool)> {
     let shape = map.shape();
     let of = |k: usize| {
         let b: Vec<f64> = map.texel(k).iter().map(|l| PI * f64::from(*l)).collect();
