@@ -14,7 +14,7 @@ use std::cell::RefCell;
 /// More corners than this many times the half planes asked for, and bands end no longer at corners; there are more of
 /// them instead.
 const MOST_CORNERS: usize = 8;
-const MORE_BANDS: usize = 4;
+const MORE_BANDS: usize = 2;
 
 /// Bands thinner than this, rad, are left out.
 const THIN: f64 = 1e-12;

@@ -192,3 +192,30 @@ fn nonsense_is_dark_and_never_ends_in_a_panic() {
         assert_eq!(empty.count(), 0);
     }
 }
+
+/// A single screen takes pi times its form factor from an evenly bright sky, whichever way it stands from the point: also
+/// behind it near the horizon, where its angles wrap round.
+#[test]
+fn a_screen_anywhere_around_hides_its_form_factor() {
+    let uniform = sky(SkyModel::Uniform).with_bands(96);
+    let mut hidden = 0;
+    for tilt in [0.0, 0.3, 1.0, 1.5] {
+        let normal = DVec3::new(0.0, -f64::sin(tilt), f64::cos(tilt));
+        for k in 0..48 {
+            let azimuth = 2.0 * PI * (f64::from(k) + 0.25) / 48.0;
+            let at = |a: f64, z: f64| DVec3::new(a.cos(), a.sin(), z) * 2.0;
+            let screen =
+                vec![at(azimuth - 0.3, 0.01), at(azimuth + 0.3, 0.01), at(azimuth + 0.3, 0.3), at(azimuth - 0.3, 0.3)];
+            let facing: Vec<DVec3> = screen.iter().rev().copied().collect();
+            let all = volumes(&uniform, std::slice::from_ref(&screen), 4.0);
+            // From whichever side the point sees it.
+            let factor =
+                [&screen, &facing].map(|p| point_to_polygon(DVec3::ZERO, normal, p)).into_iter().fold(0.0, f64::max);
+            let open = uniform.open(DVec3::ZERO, normal);
+            let seen = uniform.seen(DVec3::ZERO, normal, NO_CASTER, &all);
+            assert!((open - seen - PI * factor).abs() < 5e-5 * open, "{tilt} {k}: {} {}", open - seen, PI * factor);
+            hidden += usize::from(factor > 1e-3);
+        }
+    }
+    assert!(hidden > 100, "{hidden}");
+}

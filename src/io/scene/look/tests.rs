@@ -218,8 +218,12 @@ fn lights_of_surfaces_go_with_their_edits() {
         other => panic!("{other:?}"),
     };
     assert_eq!((height(0), height(1)), (2.0, 3.0));
-    let e = look.on(&scene.at(2).expect("stage")).expect_err("gone").to_string();
-    assert!(e.contains("s.toml:") && e.contains("no surface \"lamp\" stands there"), "{e}");
+    // A lamp that was taken away does not shine; one that never was is a mistake.
+    assert_eq!(look.on(&scene.at(2).expect("stage")).expect("dark").lights, []);
+    let path = files.write("t.toml", &text("", &more.replace("surface = \"lamp\"", "surface = \"lampp\"")));
+    let (scene, look) = open_with_look(&path.to_string_lossy(), &SceneOptions::default()).expect("reads");
+    let e = look.on(&scene.at(0).expect("stage")).expect_err("unknown").to_string();
+    assert!(e.contains("t.toml:") && e.contains("no surface \"lampp\" stands there"), "{e}");
 }
 
 #[test]
