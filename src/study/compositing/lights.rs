@@ -140,10 +140,11 @@ impl Compared {
             sums.noise += std_err * std_err;
             sums.truth += mean * mean;
             if *std_err > ROUNDING * brightest {
-                let t = off / std_err;
+                // A sliver of a lamp that rays may miss is in no standard error of theirs.
+                let t = (off.abs() - missed * open).max(0.0) / std_err;
                 sums.with_error += 1;
                 sums.t_squared += t * t;
-                sums.worst_t = sums.worst_t.max(t.abs());
+                sums.worst_t = sums.worst_t.max(t);
             } else if off.abs() > ROUNDING * brightest + missed * open {
                 sums.surely_off += 1;
             }

@@ -97,11 +97,13 @@ pub struct LightRow {
     pub noise: f64,
     /// Points that have a standard error.
     pub with_error: usize,
-    /// Mean of the squared differences in standard errors over those; 15 / 13 where all is well (Student t of 15 degrees).
+    /// Mean of the squared differences in standard errors over those, what rays may miss of a lamp taken off; at most about
+    /// 15 / 13 where all is well (Student t of 15 degrees).
     pub mean_squared_t: Option<f64>,
-    /// The largest difference in standard errors.
+    /// The largest difference in standard errors, what rays may miss of a lamp (14 over their number) taken off.
     pub worst_t: f64,
-    /// What the largest stays below in 999 of 1000 such audits where all is well (Bonferroni over points).
+    /// What the largest stays below in 999 of 1000 such audits where all is well (Student t of 15 degrees, Bonferroni over
+    /// points): nominal, since few hits are not normal.
     pub allowed_t: f64,
     /// Points without a standard error at which the two differ by more than rays can miss.
     pub surely_off: usize,

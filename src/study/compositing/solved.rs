@@ -8,7 +8,7 @@ use crate::scene::Stage;
 use crate::solution::Radiosity;
 use std::collections::BTreeMap;
 
-/// A solution, smoothed to the corners of patches [CG85 fig. 4] as pictures of radiosities are.
+/// A solution, smoothed to the corners of patches [CG85 fig. 8] as pictures of radiosities are.
 pub struct Solved<'a> {
     mesh: Mesh<'a>,
     locator: PatchLocator,
