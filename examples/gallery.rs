@@ -80,8 +80,9 @@ impl Gallery {
         self.etalon(&format!("composite {parts} -o town.span"))?;
         for light in ["day", "overcast", "night"] {
             self.etalon(&format!("shade town.span --lighting town/{light}.toml -o town-{light}.png"))?;
-            self.keep(&format!("town-{light}.png"), &format!("town-{light}.png"))?;
         }
+        self.join(&["town-day.png", "town-night.png"], "town.png")?;
+        self.keep("town-overcast.png", "town-overcast.png")?;
         self.etalon("scan town/room.toml -o room.span")?;
         self.etalon("shade room.span -o room.png")?;
         self.keep("room.png", "lamp-and-window.png")?;

@@ -47,7 +47,7 @@ extinction = 0.006
 radiance = [0.75, 0.78, 0.82]
 
 [background]
-radiance = [0.0, 0.0, 0.0]
+radiance = [0.35, 0.36, 0.38]
 sky = true
 "#;
 
@@ -113,7 +113,7 @@ extinction = 0.002
 radiance = [0.01, 0.012, 0.02]
 
 [background]
-radiance = [0.0, 0.0, 0.0]
+radiance = [0.006, 0.008, 0.014]
 sky = true
 "#
 }
