@@ -13,6 +13,8 @@ use std::f64::consts::PI;
 
 /// Heights below this share of the distance are rounding.
 const ON_PLANE: f64 = 1e-12;
+/// And so are distances between corners.
+const ROUNDING: f64 = 1e-12;
 
 /// A polygon that shines to its front.
 pub(super) struct Panel {
@@ -139,7 +141,7 @@ impl Room {
             Lies::Inside => {}
         }
         let open = lambert(&self.whole, normal);
-        if self.cast_shadows() {
+        if self.cast_shadows(reach) {
             return 0.0;
         }
         let hidden = self.hidden(normal);
@@ -147,7 +149,7 @@ impl Room {
     }
 
     /// Cuts the shadows out of the panel; true where one of them hides all of it.
-    fn cast_shadows(&mut self) -> bool {
+    fn cast_shadows(&mut self, reach: f64) -> bool {
         self.cuts.clear();
         self.cast.clear();
         for volume in 0..self.ends.len() {
@@ -178,8 +180,10 @@ impl Room {
                     .part
                     .iter()
                     .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+                // The lamp is flat: along an axis at right angles to it boxes have no depth, and rounding would part them.
+                let pad = DVec3::splat(ROUNDING * reach);
                 self.cuts.push(&self.part);
-                self.cast.push(Cast { volume, lo, hi });
+                self.cast.push(Cast { volume, lo: lo - pad, hi: hi + pad });
             }
         }
         false

@@ -135,3 +135,35 @@ fn more_half_planes_bring_the_sky_nearer() {
         assert!(errors[2] < 2e-3 && errors[4] < 0.3 * errors[0], "{model:?} {errors:?}");
     }
 }
+
+/// What lies behind two overlapping boards is what lies behind the whole board: nothing counts twice, however the corners
+/// of shadows are rounded in the plane of an upright lamp.
+#[test]
+fn overlapping_boards_hide_what_the_whole_board_hides() {
+    let mut dice = Dice(11);
+    let window = vec![
+        DVec3::new(5.0, 1.2, 0.9),
+        DVec3::new(5.0, 1.2, 2.2),
+        DVec3::new(5.0, 3.0, 2.2),
+        DVec3::new(5.0, 3.0, 0.9),
+    ];
+    let panel = lamp(LightShape::Area { polygon: window });
+    let mut shadowed = 0;
+    for _ in 0..3000 {
+        let (mut whole, mut halves) = (Vec::new(), Vec::new());
+        for _ in 0..3 {
+            let corner = DVec3::new(dice.within(2.0, 4.5), dice.within(0.5, 3.0), dice.within(0.2, 1.5));
+            let (u, v) = (dice.point(-0.4, 0.4), dice.point(-0.4, 0.4));
+            let board = |a: f64, b: f64| vec![corner + u * a, corner + u * b, corner + u * b + v, corner + u * a + v];
+            whole.push(board(0.0, 1.0));
+            halves.extend([board(0.0, 0.7), board(0.3, 1.0)]);
+        }
+        let point = DVec3::new(dice.within(0.2, 2.0), dice.within(0.3, 3.7), 0.0);
+        let value = |polygons: &[Vec<DVec3>]| panel.seen(point, DVec3::Z, NO_CASTER, &volumes(&panel, polygons, 8.0));
+        let (a, b) = (value(&whole), value(&halves));
+        let open = panel.open(point, DVec3::Z);
+        shadowed += usize::from(a < 0.98 * open);
+        assert!((a - b).abs() < 1e-9 * open, "{a} {b} {open}");
+    }
+    assert!(shadowed > 500, "{shadowed}");
+}
